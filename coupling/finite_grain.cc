@@ -1,0 +1,258 @@
+#include "coupling/finite_grain.h"
+
+#include "coupling/convert.h"
+#include "coupling/dislocation_tractions.h"
+#include "coupling/input_error.h"
+#include "dd/elasticity/triangle_displacement.h"
+#include "dd/topology/growth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ddfem::coupling
+{
+namespace
+{
+using FaceNames = std::map<dealii::types::boundary_id, std::string>;
+
+dealii::types::boundary_id find_face(const FaceNames &names, const std::string &name, const std::string &entry)
+{
+  try
+  {
+    return fem::boundary_id_of(names, name);
+  }
+  catch (const std::invalid_argument &e)
+  {
+    throw InputError("Boundary conditions/" + entry + " = " + name + ": " + e.what());
+  }
+}
+
+std::vector<PolyhedronShape::Facet> facets_of(const fem::Triangulation &mesh)
+{
+  std::vector<PolyhedronShape::Facet> facets;
+  for (const fem::BoundaryFacet &f : fem::boundary_facets(mesh))
+  {
+    PolyhedronShape::Facet facet;
+    for (const auto &v : f.vertices)
+      facet.vertices.push_back(to_vec3(v));
+    facet.face_id = static_cast<int>(f.boundary);
+    facets.push_back(facet);
+  }
+  return facets;
+}
+
+/// The plane that a face lies in, if it is perpendicular to a coordinate axis.
+struct AxisPlane
+{
+  int axis;
+  double position, sign; ///< coordinate (nm), and side of the grain it is on
+};
+
+AxisPlane plane_of_face(const std::vector<PolyhedronShape::Facet> &facets, const int id, const std::string &name)
+{
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low, centre = Vec3::Zero();
+  double n_all = 0;
+  for (const auto &f : facets)
+    for (const Vec3 &v : f.vertices)
+    {
+      centre += v;
+      ++n_all;
+      if (f.face_id == id)
+      {
+        low  = low.cwiseMin(v);
+        high = high.cwiseMax(v);
+      }
+    }
+  for (int c = 0; c < 3; ++c)
+    if (high[c] - low[c] < 1e-6 * (high - low).norm())
+      return {c, low[c], low[c] > centre[c] / n_all ? 1.0 : -1.0};
+  throw InputError("Boundary conditions: the face '" + name + "' is not a plane perpendicular to x, y or z");
+}
+} // namespace
+
+std::pair<double, double> imbalance(const fem::TractionSummary &t)
+{
+  return {t.absolute_force > 0 ? t.force.norm() / t.absolute_force : 0.0,
+          t.absolute_moment > 0 ? t.moment.norm() / t.absolute_moment : 0.0};
+}
+
+FiniteGrain::FiniteGrain(const GrainParameters &grain_parameters, const IsotropicMedium &elastic_medium, MPI_Comm comm)
+  : parameters(grain_parameters), medium(elastic_medium), communicator(comm)
+{
+  try
+  {
+    mesh       = fem::make_mesh(communicator, parameters.mesh);
+    face_names = fem::boundary_names(parameters.mesh);
+    build_shape(parameters);
+  }
+  catch (const std::invalid_argument &e)
+  {
+    throw InputError(std::string("Domain: ") + e.what());
+  }
+  catch (const std::runtime_error &e)
+  {
+    throw InputError(std::string("Domain: ") + e.what());
+  }
+  find_platens(parameters);
+  const bool clamped = parameters.clamped;
+  const std::array<bool, 3> components{clamped || axis == 0, clamped || axis == 1, clamped || axis == 2};
+  problem = std::make_unique<fem::ElasticProblem>(
+    *mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu},
+    std::vector<fem::DisplacementCondition>{{fixed_face, components}, {platen_face, components}});
+  platen_area = problem->boundary_area(platen_face);
+  reference_correction.resize(problem->boundary_points().size());
+  infinite_displacement.resize(problem->boundary_points().size());
+
+  const double probe = 1e-3 * gauge_length;
+  problem->solve(prescribed(probe));
+  modulus = platen_sign * problem->reaction(platen_face)[static_cast<unsigned>(axis)] / platen_area / 1e-3;
+}
+
+FiniteGrain::~FiniteGrain() = default;
+
+double FiniteGrain::volume() const
+{
+  return problem->volume();
+}
+
+std::uint64_t FiniteGrain::n_dofs() const
+{
+  return problem->n_dofs();
+}
+
+void FiniteGrain::build_shape(const GrainParameters &p)
+{
+  const Vec3 origin(p.mesh.origin[0], p.mesh.origin[1], p.mesh.origin[2]);
+  const Vec3 size(p.mesh.size[0], p.mesh.size[1], p.mesh.size[2]);
+  if (p.mesh.shape == fem::MeshParameters::Shape::box)
+    grain_shape = std::make_unique<BoxShape>(origin, origin + size);
+  else if (p.mesh.shape == fem::MeshParameters::Shape::cylinder)
+    grain_shape = std::make_unique<CylinderShape>(origin, p.mesh.radius, p.mesh.height);
+  else
+    grain_shape = std::make_unique<PolyhedronShape>(facets_of(*mesh));
+  for (const std::string &name : p.impenetrable_faces)
+    grain_shape->set_face_kind(static_cast<int>(find_face(face_names, name, "Impenetrable faces")),
+                               FaceKind::impenetrable);
+}
+
+void FiniteGrain::find_platens(const GrainParameters &p)
+{
+  const bool cylinder      = p.mesh.shape == fem::MeshParameters::Shape::cylinder;
+  const bool box           = p.mesh.shape == fem::MeshParameters::Shape::box;
+  const auto name_or       = [&](const std::string &given, const char *for_box, const char *for_cylinder,
+                           const std::string &entry) {
+    if (given.empty() && !box && !cylinder)
+      throw InputError("Boundary conditions/" + entry + " = (empty): a mesh needs the name of a physical surface");
+    return given.empty() ? std::string(cylinder ? for_cylinder : for_box) : given;
+  };
+  const std::string fixed  = name_or(p.fixed_face, "z-", "bottom", "Fixed face");
+  const std::string platen = name_or(p.platen_face, "z+", "top", "Platen face");
+  fixed_face               = find_face(face_names, fixed, "Fixed face");
+  platen_face              = find_face(face_names, platen, "Platen face");
+  const auto facets        = facets_of(*mesh);
+  const AxisPlane low      = plane_of_face(facets, static_cast<int>(fixed_face), fixed);
+  const AxisPlane high     = plane_of_face(facets, static_cast<int>(platen_face), platen);
+  if (low.axis != high.axis || low.sign == high.sign)
+    throw InputError("Boundary conditions: the faces '" + fixed + "' and '" + platen + "' are not opposite each other");
+  axis         = high.axis;
+  platen_sign  = high.sign;
+  gauge_length = std::abs(high.position - low.position);
+}
+
+std::vector<dealii::Tensor<1, 3>> FiniteGrain::prescribed(const double u) const
+{
+  std::vector<dealii::Tensor<1, 3>> values(problem->boundary_points().size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    values[i]       = reference_correction[i] - infinite_displacement[i];
+    const auto &ids = problem->boundary_ids()[i];
+    if (std::find(ids.begin(), ids.end(), platen_face) != ids.end())
+      values[i][static_cast<unsigned>(axis)] += platen_sign * u;
+  }
+  return values;
+}
+
+void FiniteGrain::set_reference(const Network &network, const LineSystem &lines)
+{
+  std::fill(infinite_displacement.begin(), infinite_displacement.end(), dealii::Tensor<1, 3>());
+  std::fill(reference_correction.begin(), reference_correction.end(), dealii::Tensor<1, 3>());
+  if (parameters.reference == ReferenceState::relaxed)
+    relax(lines);
+  else
+    add_swept(grown_area(network, grain_shape.get(), parameters.ray_direction));
+}
+
+void FiniteGrain::relax(const LineSystem &lines)
+{
+  fem::ElasticProblem free_grain(*mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu}, {});
+  free_grain.set_tractions(DislocationTractions(lines));
+  free_grain.solve(std::vector<dealii::Tensor<1, 3>>(free_grain.boundary_points().size()));
+  reference_correction = free_grain.boundary_displacements();
+}
+
+void FiniteGrain::add_swept(const SweptArea &area)
+{
+  const auto &points    = problem->boundary_points();
+  const auto &triangles = area.triangles();
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    const Vec3 x = to_vec3(points[i]);
+    Vec3 u       = Vec3::Zero();
+    for (const SweptTriangle &t : triangles)
+      u += triangle_displacement(medium.nu, x, t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);
+    infinite_displacement[i] += to_tensor(u);
+  }
+}
+
+GrainSolution FiniteGrain::solve(const LineSystem &lines, const double u)
+{
+  GrainSolution solution;
+  solution.tractions       = problem->set_tractions(DislocationTractions(lines));
+  solution.solve           = problem->solve(prescribed(u));
+  const auto component     = static_cast<unsigned>(axis);
+  solution.fixed_reaction  = -platen_sign * problem->reaction(fixed_face)[component];
+  solution.platen_reaction = platen_sign * problem->reaction(platen_face)[component];
+  return solution;
+}
+
+std::vector<SymTensor> FiniteGrain::correction_stress(const std::vector<Vec3> &points) const
+{
+  std::vector<dealii::Point<3>> positions;
+  positions.reserve(points.size());
+  for (const Vec3 &x : points)
+    positions.push_back(to_point(x));
+  std::vector<SymTensor> result;
+  result.reserve(points.size());
+  for (const auto &s : problem->stress_at(positions))
+    result.push_back(to_sym_tensor(s));
+  return result;
+}
+
+std::vector<Vec3> FiniteGrain::boundary_nodes() const
+{
+  std::vector<Vec3> nodes;
+  for (const auto &p : problem->boundary_points())
+    nodes.push_back(to_vec3(p));
+  return nodes;
+}
+
+std::vector<Vec3> FiniteGrain::boundary_displacement() const
+{
+  std::vector<Vec3> u;
+  const auto correction = problem->boundary_displacements();
+  for (std::size_t i = 0; i < correction.size(); ++i)
+    u.push_back(to_vec3(correction[i] + infinite_displacement[i]));
+  return u;
+}
+
+std::string FiniteGrain::write(const std::string &directory, const std::string &name) const
+{
+  // Displacements are counted from the reference state, like the prescribed ones.
+  std::vector<dealii::Tensor<1, 3>> extra(infinite_displacement.size());
+  for (std::size_t i = 0; i < extra.size(); ++i)
+    extra[i] = infinite_displacement[i] - reference_correction[i];
+  return problem->write_surface(directory, name, extra);
+}
+} // namespace ddfem::coupling

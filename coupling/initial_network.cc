@@ -1,0 +1,90 @@
+#include "coupling/initial_network.h"
+
+#include "coupling/input_error.h"
+#include "dd/io/file_error.h"
+#include "dd/io/paradis_data.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace ddfem::coupling
+{
+namespace
+{
+std::string in_metres(const Vec3 &x)
+{
+  std::ostringstream out;
+  out << "(" << x[0] * 1e-9 << ", " << x[1] * 1e-9 << ", " << x[2] * 1e-9 << ") m";
+  return out.str();
+}
+
+Network read_network(const Parameters &p)
+{
+  if (p.network_file.empty())
+    return {};
+  ParadisReadOptions options;
+  options.burgers_magnitude = p.burgers_magnitude;
+  options.cubic_orientation = p.orientation;
+  options.periodic          = p.mode == Mode::periodic;
+  options.strict            = true;
+  try
+  {
+    return read_paradis_data(p.network_file, options).network;
+  }
+  catch (const FileError &e)
+  {
+    throw InputError(e.what());
+  }
+}
+} // namespace
+
+Network build_network(const Parameters &p)
+{
+  Network network = read_network(p);
+  if (p.mode == Mode::periodic)
+    network.set_period(p.cell.lengths);
+  for (const FrankReadSource &source : p.sources)
+    add_frank_read_source(network, p.orientation, source, 0.75 * p.topology.max_segment);
+  for (const PolygonLoop &loop : p.loops)
+    add_polygon_loop(network, p.orientation, loop, p.topology.max_segment);
+  const auto violations = network.violations();
+  if (!violations.empty())
+    throw InputError("Microstructure: " + violations.front().message);
+  return network;
+}
+
+void fit_into_grain(Network &network, const GrainShape &shape, const double min_segment)
+{
+  const double tolerance = 1e-3 * min_segment;
+  for (const NodeIndex i : network.nodes())
+  {
+    const Vec3 x     = network.position(i);
+    const double phi = shape.signed_distance(x);
+    const bool surface = network.constraint(i) == NodeConstraint::surface;
+    if (phi > tolerance)
+      throw InputError("Microstructure: node " + std::to_string(network.id(i)) + " at " + in_metres(x) + " lies " +
+                       std::to_string(phi) + " nm outside the grain; all nodes must be inside or on the surface");
+    if (!surface)
+      continue;
+    const auto arms = network.connected_segments(i);
+    const auto y    = project_to_surface(shape, x, arms.empty() ? Vec3(Vec3::Zero()) : network.normal(arms[0]));
+    if (!y || (*y - x).norm() > tolerance + 1e-3 * shape.diameter())
+      throw InputError("Microstructure: surface node " + std::to_string(network.id(i)) + " at " + in_metres(x) +
+                       " is not on the surface of the grain");
+    network.set_position(i, *y);
+  }
+}
+
+ProductPlane product_plane_rule(const SlipSystems &systems)
+{
+  return [systems](Network &network, const Vec3 &xi, const Vec3 &b, const Vec3 &point) -> PlaneIndex {
+    for (const std::size_t k : systems.glissile_planes(b))
+    {
+      const SlipPlane &plane = systems.planes()[k];
+      if (std::abs(plane.normal.dot(xi)) < 1e-4)
+        return network.planes().find_or_insert(plane.miller, plane.normal, point);
+    }
+    return {};
+  };
+}
+} // namespace ddfem::coupling

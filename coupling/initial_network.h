@@ -1,0 +1,24 @@
+// The network at t = 0.
+#pragma once
+
+#include "coupling/parameters.h"
+#include "dd/geometry/grain_shape.h"
+#include "dd/network/network.h"
+#include "dd/topology/topology_context.h"
+
+#include <string>
+#include <vector>
+
+namespace ddfem::coupling
+{
+/// Builds the network of the input: sources, loops, network file. Throws InputError for lines that the crystal does not
+/// have or that violate an invariant.
+Network build_network(const Parameters &parameters);
+
+/// Throws InputError naming the first nodes that lie outside the grain, or inside but marked as surface nodes. Surface nodes
+/// within 1e-3 of the minimum segment of the surface are put onto it.
+void fit_into_grain(Network &network, const GrainShape &shape, double min_segment);
+
+/// Where a junction line glides: the {111} plane that holds both its direction and its Burgers vector, if there is one.
+ProductPlane product_plane_rule(const SlipSystems &systems);
+} // namespace ddfem::coupling

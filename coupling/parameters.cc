@@ -1,0 +1,286 @@
+#include "coupling/parameters.h"
+
+#include "coupling/input_error.h"
+#include "dd/common/units.h"
+#include "dd/crystal/material.h"
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+namespace ddfem::coupling
+{
+namespace
+{
+Vec3 to_vec3(const std::vector<double> &v)
+{
+  return {v[0], v[1], v[2]};
+}
+
+SymTensor to_tensor(const std::vector<double> &v)
+{
+  return SymTensor(v.data());
+}
+
+/// The number in the deck, or @p fallback where it is zero.
+double number_or(const InputDeck &deck, const std::string &path, const double unit, const double fallback)
+{
+  const double value = deck.number(path);
+  return value > 0 ? value * unit : fallback;
+}
+
+Miller read_miller(const InputDeck &deck, const std::string &path, const std::string &text)
+{
+  std::istringstream in(text);
+  Miller m{};
+  std::string rest;
+  if (!(in >> m[0] >> m[1] >> m[2]) || (in >> rest) || is_zero(m))
+    deck.reject(path, "'" + text + "' must be three integer Miller indices, not all zero");
+  return m;
+}
+
+void read_material(const InputDeck &deck, Parameters &p)
+{
+  const Material *material = nullptr;
+  try
+  {
+    material = &find_material(deck.text("Material/Name"));
+  }
+  catch (const std::invalid_argument &e)
+  {
+    deck.reject("Material/Name", e.what());
+  }
+  if (material->lattice != Lattice::fcc)
+    deck.reject("Material/Name", std::string("is ") + name_of(material->lattice) + "; allowed are fcc materials");
+  p.medium.mu         = number_or(deck, "Material/Shear modulus", units::pascal, material->mu);
+  p.medium.nu         = number_or(deck, "Material/Poisson ratio", 1, material->nu);
+  p.lattice_parameter = number_or(deck, "Material/Lattice parameter", units::metre, material->lattice_parameter);
+  p.burgers_magnitude = p.lattice_parameter / std::sqrt(2.0);
+  p.medium.a          = number_or(deck, "Material/Core radius", units::metre, p.burgers_magnitude);
+  p.core_cutoff_radius   = number_or(deck, "Material/Core cutoff radius", units::metre, p.medium.a);
+  p.mobility.drag_edge   = number_or(deck, "Mobility/Edge drag", units::pascal_second, material->drag);
+  p.mobility.drag_screw  = number_or(deck, "Mobility/Screw drag", units::pascal_second, material->drag);
+  p.pair_tolerance       = deck.number("Forces/Pair tolerance");
+}
+
+void read_orientation(const InputDeck &deck, Parameters &p)
+{
+  const Miller x = read_miller(deck, "Crystal/Direction along x", deck.text("Crystal/Direction along x"));
+  const Miller z = read_miller(deck, "Crystal/Direction along z", deck.text("Crystal/Direction along z"));
+  try
+  {
+    p.orientation = Orientation::from_axes(SampleAxis::x, x, SampleAxis::z, z);
+  }
+  catch (const std::invalid_argument &e)
+  {
+    deck.reject("Crystal/Direction along x", e.what());
+  }
+}
+
+void read_mesh(const InputDeck &deck, Parameters &p)
+{
+  auto &mesh              = p.grain.mesh;
+  const std::string shape = deck.text("Domain/Shape");
+  mesh.shape = shape == "box"        ? fem::MeshParameters::Shape::box
+               : shape == "cylinder" ? fem::MeshParameters::Shape::cylinder
+                                     : fem::MeshParameters::Shape::gmsh;
+  const Vec3 origin = to_vec3(deck.numbers("Domain/Origin", 3)) * units::metre;
+  const Vec3 size   = to_vec3(deck.numbers("Domain/Size", 3)) * units::metre;
+  if ((size.array() <= 0).any())
+    deck.reject("Domain/Size", "edge lengths must be positive");
+  mesh.origin = {origin[0], origin[1], origin[2]};
+  mesh.size   = {size[0], size[1], size[2]};
+  mesh.radius = deck.number("Domain/Radius") * units::metre;
+  mesh.height = deck.number("Domain/Height") * units::metre;
+  const auto subdivisions = deck.numbers("Domain/Subdivisions", 3);
+  for (std::size_t c = 0; c < 3; ++c)
+    mesh.subdivisions[c] = static_cast<unsigned>(subdivisions[c]);
+  mesh.refinements    = deck.integer("Domain/Refinements");
+  mesh.length_unit_nm = deck.number("Domain/Mesh unit") * units::metre;
+  if (mesh.shape == fem::MeshParameters::Shape::gmsh)
+  {
+    if (deck.text("Domain/Mesh file").empty())
+      deck.reject("Domain/Mesh file", "a grain of shape 'mesh' needs a file");
+    mesh.file = (std::filesystem::path(deck.directory()) / deck.text("Domain/Mesh file")).string();
+    if (!std::filesystem::is_regular_file(mesh.file))
+      deck.reject("Domain/Mesh file", "there is no file " + mesh.file);
+  }
+  p.cell = {origin, size};
+  if (p.mode != Mode::finite && mesh.shape != fem::MeshParameters::Shape::box)
+    deck.reject("Domain/Shape", "a " + deck.text("Mode") + " body is a box");
+}
+
+void read_grain(const InputDeck &deck, Parameters &p)
+{
+  p.grain.elasticity.degree             = deck.integer("Domain/Element degree");
+  p.grain.elasticity.relative_tolerance = deck.number("Domain/Elastic tolerance");
+  p.grain.elasticity.traction_tolerance = deck.number("Domain/Traction tolerance");
+  p.grain.fixed_face                    = deck.text("Boundary conditions/Fixed face");
+  p.grain.platen_face                   = deck.text("Boundary conditions/Platen face");
+  p.grain.clamped                       = deck.text("Boundary conditions/Platen contact") == "clamped";
+  p.grain.impenetrable_faces            = deck.items("Boundary conditions/Impenetrable faces");
+  p.grain.reference     = deck.text("Boundary conditions/Reference state") == "relaxed" ? ReferenceState::relaxed
+                                                                                       : ReferenceState::perfect_crystal;
+  p.grain.ray_direction = deck.text("Boundary conditions/Ray direction") == "normal" ? RayDirection::normal
+                                                                                     : RayDirection::radial;
+}
+
+void read_loading(const InputDeck &deck, Parameters &p)
+{
+  const std::string type = deck.text("Loading/Type");
+  p.loading.type = type == "none" ? LoadingType::none : type == "stress" ? LoadingType::stress : LoadingType::strain_rate;
+  const Vec3 axis = to_vec3(deck.numbers("Loading/Axis", 3));
+  if (axis.norm() == 0)
+    deck.reject("Loading/Axis", "must not be zero");
+  p.loading.axis        = axis.normalized();
+  p.loading.strain_rate = deck.number("Loading/Strain rate") * units::per_second;
+  p.loading.stress      = to_tensor(deck.numbers("Loading/Stress", 6)) * units::pascal;
+  p.loading.stress_rate = to_tensor(deck.numbers("Loading/Stress rate", 6)) * units::pascal / units::second;
+  if (p.mode == Mode::finite && p.loading.type == LoadingType::stress)
+    deck.reject("Loading/Type", "a finite grain is loaded by 'strain rate' or 'none'");
+  if (p.mode == Mode::infinite && p.loading.type == LoadingType::strain_rate)
+    deck.reject("Loading/Type", "an infinite body is loaded by 'stress' or 'none'");
+}
+
+/// The fields of one item 'a / b / c'; exactly @p n.
+std::vector<std::string> fields(const InputDeck &deck, const std::string &path, const std::string &item,
+                                const std::size_t n, const std::string &form)
+{
+  std::istringstream in(item);
+  std::vector<std::string> result;
+  for (std::string f; std::getline(in, f, '/');)
+    result.push_back(f);
+  if (result.size() != n)
+    deck.reject(path, "'" + item + "' has " + std::to_string(result.size()) + " fields; allowed is '" + form + "'");
+  return result;
+}
+
+std::vector<double> field_numbers(const InputDeck &deck, const std::string &path, const std::string &text,
+                                  const std::size_t n)
+{
+  std::istringstream in(text);
+  std::vector<double> result;
+  for (double x = 0; in >> x;)
+    result.push_back(x);
+  if (!in.eof() || result.size() != n)
+    deck.reject(path, "'" + text + "' must be " + std::to_string(n) + (n == 1 ? " number" : " numbers"));
+  return result;
+}
+
+/// Burgers vector a/2 <110>-like along @p direction; must be one of the crystal and, if @p in_plane, glide in @p plane.
+Vec3 read_burgers(const InputDeck &deck, const std::string &path, const Parameters &p, const Miller &direction)
+{
+  const Vec3 b = p.burgers_magnitude * p.orientation.unit_vector(direction);
+  if (p.slip_systems().glissile_planes(b).empty())
+    deck.reject(path, "[" + to_string(direction) + "] is not a <110> direction of this fcc crystal");
+  return b;
+}
+
+void read_sources(const InputDeck &deck, Parameters &p)
+{
+  const std::string path = "Microstructure/Frank-Read sources";
+  for (const std::string &item : deck.items(path))
+  {
+    const auto f = fields(deck, path, item, 5, "plane / Burgers direction / centre / length / character");
+    FrankReadSource source;
+    source.plane           = read_miller(deck, path, f[0]);
+    const Miller direction = read_miller(deck, path, f[1]);
+    source.burgers         = read_burgers(deck, path, p, direction);
+    if (dot(source.plane, direction) != 0)
+      deck.reject(path, "b . n is not zero: [" + to_string(direction) + "] does not lie in the plane (" +
+                          to_string(source.plane) + ")");
+    if (!p.slip_systems().find(source.burgers, source.plane))
+      deck.reject(path, "(" + to_string(source.plane) + ") is not a {111} plane of this fcc crystal");
+    source.centre          = to_vec3(field_numbers(deck, path, f[2], 3)) * units::metre;
+    source.length          = field_numbers(deck, path, f[3], 1)[0] * units::metre;
+    source.character_angle = field_numbers(deck, path, f[4], 1)[0];
+    if (source.length <= 0)
+      deck.reject(path, "the length of a source must be positive");
+    p.sources.push_back(source);
+  }
+}
+
+void read_loops(const InputDeck &deck, Parameters &p)
+{
+  const std::string path = "Microstructure/Loops";
+  for (const std::string &item : deck.items(path))
+  {
+    const auto f = fields(deck, path, item, 5, "plane / Burgers direction / centre / radius / corners");
+    PolygonLoop loop;
+    loop.plane           = read_miller(deck, path, f[0]);
+    loop.burgers         = read_burgers(deck, path, p, read_miller(deck, path, f[1]));
+    loop.centre          = to_vec3(field_numbers(deck, path, f[2], 3)) * units::metre;
+    loop.radius          = field_numbers(deck, path, f[3], 1)[0] * units::metre;
+    const double corners = field_numbers(deck, path, f[4], 1)[0];
+    if (loop.radius <= 0 || corners < 3 || corners > 1000 || corners != std::floor(corners))
+      deck.reject(path, "a loop needs a positive radius and 3 to 1000 corners");
+    loop.corners = static_cast<unsigned>(corners);
+    p.loops.push_back(loop);
+  }
+}
+
+void read_microstructure(const InputDeck &deck, Parameters &p)
+{
+  read_sources(deck, p);
+  read_loops(deck, p);
+  if (const std::string file = deck.text("Microstructure/Network file"); !file.empty())
+  {
+    p.network_file = (std::filesystem::path(deck.directory()) / file).string();
+    if (!std::filesystem::is_regular_file(p.network_file))
+      deck.reject("Microstructure/Network file", "there is no file " + p.network_file);
+  }
+}
+
+void read_discretisation(const InputDeck &deck, Parameters &p)
+{
+  auto &t            = p.topology;
+  t.min_segment      = deck.number("Discretisation/Minimum segment") * units::metre;
+  t.max_segment      = deck.number("Discretisation/Maximum segment") * units::metre;
+  t.collision_radius = number_or(deck, "Discretisation/Collision radius", units::metre, t.min_segment / 8);
+  t.min_area = number_or(deck, "Discretisation/Minimum area", units::metre * units::metre, 0.01 * t.min_segment * t.min_segment);
+  if (t.max_segment < 2 * t.min_segment)
+    deck.reject("Discretisation/Maximum segment", "must be at least twice the minimum segment");
+  if (t.min_segment < 2 * p.medium.a)
+    deck.reject("Discretisation/Minimum segment", "must be at least two core radii");
+  if (t.collision_radius > 0.5 * t.min_segment)
+    deck.reject("Discretisation/Collision radius", "must not exceed half the minimum segment");
+  if (p.mode == Mode::periodic && t.max_segment > p.cell.lengths.minCoeff() / 5)
+    deck.reject("Discretisation/Maximum segment", "must not exceed a fifth of the shortest edge of the periodic cell");
+}
+
+void read_time_stepping(const InputDeck &deck, Parameters &p)
+{
+  auto &i            = p.integrator;
+  i.error_tolerance  = number_or(deck, "Time stepping/Position tolerance", units::metre, p.topology.min_segment / 50);
+  i.max_displacement = number_or(deck, "Time stepping/Maximum displacement", units::metre, p.topology.min_segment / 2);
+  i.max_step         = deck.number("Time stepping/Maximum step") * units::second;
+  i.initial_step     = deck.number("Time stepping/Initial step") * units::second;
+  i.max_stages       = deck.integer("Time stepping/Maximum stages");
+  if (i.initial_step > i.max_step)
+    deck.reject("Time stepping/Initial step", "must not exceed the maximum step");
+  p.stop.final_time           = deck.number("Time stepping/Final time") * units::second;
+  p.stop.max_steps            = deck.integer("Time stepping/Maximum steps");
+  p.stop.final_strain         = deck.number("Time stepping/Final strain");
+  p.stop.final_plastic_strain = deck.number("Time stepping/Final plastic strain");
+  p.stop.equilibrium_speed    = deck.number("Time stepping/Equilibrium speed") * units::metre_per_second;
+  p.output = {deck.integer("Output/History interval"), deck.integer("Output/Frame interval"),
+              deck.flag("Output/Check network")};
+}
+} // namespace
+
+Parameters interpret(const InputDeck &deck)
+{
+  Parameters p;
+  const std::string mode = deck.text("Mode");
+  p.mode = mode == "finite" ? Mode::finite : mode == "periodic" ? Mode::periodic : Mode::infinite;
+  read_material(deck, p);
+  read_orientation(deck, p);
+  read_mesh(deck, p);
+  read_grain(deck, p);
+  read_loading(deck, p);
+  read_discretisation(deck, p);
+  read_microstructure(deck, p);
+  read_time_stepping(deck, p);
+  return p;
+}
+} // namespace ddfem::coupling

@@ -1,0 +1,109 @@
+// The input in internal units (nm, ns, MPa), checked as a whole.
+#pragma once
+
+#include "coupling/parameter_table.h"
+#include "dd/crystal/orientation.h"
+#include "dd/crystal/slip_systems.h"
+#include "dd/elasticity/isotropic.h"
+#include "dd/forces/nodal_forces.h"
+#include "dd/geometry/periodic_cell.h"
+#include "dd/integrators/stabilised_runge_kutta.h"
+#include "dd/microstructure/sources.h"
+#include "dd/mobility/linear_glide.h"
+#include "dd/topology/topology_context.h"
+#include "fem/elastic_problem.h"
+#include "fem/mesh.h"
+
+#include <string>
+#include <vector>
+
+namespace ddfem::coupling
+{
+enum class Mode
+{
+  finite,
+  periodic,
+  infinite
+};
+
+enum class ReferenceState
+{
+  relaxed,
+  perfect_crystal
+};
+
+/// Finite grain: mesh, held faces, surfaces.
+struct GrainParameters
+{
+  fem::MeshParameters mesh;
+  fem::ElasticProblem::Parameters elasticity;
+  std::string fixed_face, platen_face; ///< names; empty: the lowest and highest along z
+  bool clamped                   = true;
+  std::vector<std::string> impenetrable_faces;
+  ReferenceState reference   = ReferenceState::relaxed;
+  RayDirection ray_direction = RayDirection::normal;
+};
+
+enum class LoadingType
+{
+  none,
+  stress,
+  strain_rate
+};
+
+struct LoadingParameters
+{
+  LoadingType type      = LoadingType::none;
+  Vec3 axis             = Vec3::UnitZ();
+  double strain_rate    = 0;                 ///< 1/ns
+  SymTensor stress      = SymTensor::Zero(); ///< MPa
+  SymTensor stress_rate = SymTensor::Zero(); ///< MPa/ns
+};
+
+struct StopCriteria
+{
+  double final_time           = 0; ///< ns
+  unsigned max_steps          = 0;
+  double final_strain         = 0; ///< 0: not used, as below
+  double final_plastic_strain = 0;
+  double equilibrium_speed    = 0; ///< nm/ns
+};
+
+struct OutputParameters
+{
+  unsigned history_interval = 1;
+  unsigned frame_interval   = 50;
+  bool check_network        = true;
+};
+
+struct Parameters
+{
+  Mode mode = Mode::finite;
+  IsotropicMedium medium;
+  double burgers_magnitude = 0; ///< nm
+  double lattice_parameter = 0; ///< nm
+  Orientation orientation;
+  LinearGlide mobility;
+  GrainParameters grain;
+  PeriodicCell cell; ///< of the periodic mode; its volume is the reference volume of the infinite mode
+  LoadingParameters loading;
+  std::vector<FrankReadSource> sources;
+  std::vector<PolygonLoop> loops;
+  std::string network_file; ///< absolute; empty: none
+  TopologySettings topology;
+  double core_cutoff_radius = 0; ///< nm
+  double pair_tolerance     = 0;
+  IntegratorSettings integrator;
+  StopCriteria stop;
+  OutputParameters output;
+
+  ForceSettings force_settings() const
+  {
+    return {medium, core_cutoff_radius, pair_tolerance, grain.ray_direction};
+  }
+  SlipSystems slip_systems() const { return {Lattice::fcc, lattice_parameter, orientation}; }
+};
+
+/// Turns the deck into parameters. Throws InputError for entries that contradict each other or make no sense.
+Parameters interpret(const InputDeck &deck);
+} // namespace ddfem::coupling

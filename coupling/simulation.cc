@@ -1,0 +1,269 @@
+#include "coupling/simulation.h"
+
+#include "coupling/input_error.h"
+#include "dd/mobility/linear_glide.h"
+#include "dd/topology/growth.h"
+#include "dd/topology/motion.h"
+#include "dd/topology/node_splitting.h"
+#include "dd/topology/proximity_collisions.h"
+#include "dd/topology/remesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <numbers>
+#include <stdexcept>
+
+namespace ddfem::coupling
+{
+namespace
+{
+volatile std::sig_atomic_t signal_received = 0;
+
+bool interrupted_anywhere(MPI_Comm communicator)
+{
+  int flag = signal_received != 0 ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &flag, 1, MPI_INT, MPI_MAX, communicator);
+  return flag != 0;
+}
+
+/// Upper bound of the line tension that a wavelength of two of the longest segments feels, MPa nm^2 (screw line, Hirth &
+/// Lothe eq. 6-82 with the core radius as inner cut-off).
+double largest_line_tension(const Parameters &p)
+{
+  const double b    = p.burgers_magnitude;
+  const double core = std::min(p.medium.a, p.core_cutoff_radius);
+  return p.medium.mu * b * b * (1 + p.medium.nu) / (4 * std::numbers::pi * (1 - p.medium.nu)) *
+         std::max(1.0, std::log(2 * p.topology.max_segment / core));
+}
+} // namespace
+
+void install_signal_handlers()
+{
+  const auto handler = [](int s) { signal_received = s; };
+  std::signal(SIGINT, handler);
+  std::signal(SIGTERM, handler);
+}
+
+Simulation::Simulation(const Parameters &p, MPI_Comm comm)
+  : parameters(p)
+  , communicator(comm)
+  , dislocations(build_network(p))
+  , product_plane(product_plane_rule(p.slip_systems()))
+  , integrator(p.integrator)
+{
+  if (p.mode == Mode::finite)
+  {
+    finite_grain = std::make_unique<FiniteGrain>(p.grain, p.medium, communicator);
+    fit_into_grain(dislocations, finite_grain->shape(), p.topology.min_segment);
+    if (p.grain.reference == ReferenceState::perfect_crystal)
+    {
+      try
+      {
+        swept                = grown_area(dislocations, &finite_grain->shape(), p.grain.ray_direction);
+        total_plastic_strain = plastic_strain_volume(swept) / finite_grain->volume();
+        swept.clear();
+      }
+      catch (const std::invalid_argument &e)
+      {
+        throw InputError(std::string("Boundary conditions/Reference state = perfect crystal: ") + e.what());
+      }
+    }
+  }
+  if (p.mode == Mode::periodic)
+    images = std::make_unique<PeriodicImages>(p.cell.origin, p.cell.lengths);
+}
+
+LineSystem Simulation::line_system()
+{
+  return {parameters.medium,
+          dislocations,
+          finite_grain ? &finite_grain->shape() : nullptr,
+          parameters.grain.ray_direction,
+          images ? &parameters.cell : nullptr,
+          images.get()};
+}
+
+ForceEnvironment Simulation::environment(const bool with_correction)
+{
+  ForceEnvironment e;
+  e.applied    = applied_stress();
+  e.shape      = finite_grain ? &finite_grain->shape() : nullptr;
+  e.cell       = images ? &parameters.cell : nullptr;
+  e.images     = images.get();
+  e.correction = with_correction ? &correction : nullptr;
+  return e;
+}
+
+SymTensor Simulation::applied_stress() const
+{
+  if (parameters.mode == Mode::finite || parameters.loading.type == LoadingType::none)
+    return SymTensor::Zero();
+  if (parameters.loading.type == LoadingType::stress)
+    return parameters.loading.stress + time * parameters.loading.stress_rate;
+  const Vec3 &a      = parameters.loading.axis;
+  const double sigma = parameters.medium.youngs_modulus() * (nominal_strain() - axial_plastic_strain());
+  return sigma * symmetric_part(a * a.transpose());
+}
+
+double Simulation::nominal_strain() const
+{
+  return parameters.loading.type == LoadingType::strain_rate ? parameters.loading.strain_rate * time : 0.0;
+}
+
+double Simulation::axial_plastic_strain() const
+{
+  const Vec3 a = finite_grain ? finite_grain->loading_axis() : parameters.loading.axis;
+  return a.dot(contract(total_plastic_strain, a));
+}
+
+double Simulation::reference_volume() const
+{
+  return finite_grain ? finite_grain->volume() : parameters.cell.volume();
+}
+
+void Simulation::update_correction()
+{
+  if (!finite_grain)
+    return;
+  const Timing::Scope scope(timing, "elastic solve");
+  solution = finite_grain->solve(line_system(), nominal_strain() * finite_grain->height());
+  const auto [force, moment] = imbalance(solution.tractions);
+  if (force > max_imbalance || moment > max_imbalance)
+    throw std::runtime_error("the tractions of the dislocations over the closed surface do not balance: net force " +
+                             std::to_string(force) + ", net moment " + std::to_string(moment) +
+                             " of the sum of their magnitudes");
+  correction = finite_grain->correction_stress(segment_points(dislocations));
+}
+
+void Simulation::start()
+{
+  if (finite_grain)
+    finite_grain->set_reference(dislocations, line_system());
+  update_correction();
+}
+
+IntegratorStep Simulation::move_lines()
+{
+  const Timing::Scope scope(timing, "forces and motion");
+  const ForceSettings settings = parameters.force_settings();
+  const ForceEnvironment e     = environment(true);
+  const auto velocity          = [&](const Network &n) {
+    return glide_velocities(n, compute_nodal_forces(n, settings, e, communicator).total, parameters.mobility, e.shape);
+  };
+  std::vector<double> drag(dislocations.node_capacity(), 0.0);
+  for (const NodeIndex i : dislocations.nodes())
+    drag[i.value] = nodal_drag(dislocations, i, parameters.mobility);
+  const double stiffness = line_tension_stiffness(dislocations, largest_line_tension(parameters), drag);
+  return integrator.advance(dislocations, velocity, stiffness, time_left());
+}
+
+TopologyContext Simulation::topology_context(std::vector<Vec3> displacement)
+{
+  return {dislocations,
+          parameters.topology,
+          finite_grain ? &finite_grain->shape() : nullptr,
+          parameters.grain.ray_direction,
+          product_plane,
+          swept,
+          counts,
+          std::move(displacement)};
+}
+
+void Simulation::change_topology(TopologyContext &context)
+{
+  const Timing::Scope scope(timing, "topology");
+  const unsigned parts = motion_substeps(context);
+  for (unsigned k = 0; k < parts; ++k)
+  {
+    collide(context);
+    move_nodes(context, 1.0 / parts);
+  }
+  const SplittingModel model{parameters.medium, parameters.core_cutoff_radius, parameters.mobility};
+  // The correction is not known on the changed network; the line tension of the arms decides.
+  split_nodes(context, model, [&](const Network &n) {
+    return compute_nodal_forces(n, parameters.force_settings(), environment(false), communicator);
+  });
+  remesh(context);
+  if (dislocations.node_capacity() > 2 * dislocations.n_nodes() + 64)
+    dislocations.clean();
+}
+
+void Simulation::book()
+{
+  const Timing::Scope scope(timing, "swept area");
+  total_plastic_strain += plastic_strain_volume(swept) / reference_volume();
+  if (finite_grain)
+    finite_grain->add_swept(swept);
+  swept.clear();
+}
+
+double Simulation::time_left() const
+{
+  double left = parameters.stop.final_time - time;
+  if (const double rate = std::abs(parameters.loading.strain_rate);
+      parameters.stop.final_strain > 0 && parameters.loading.type == LoadingType::strain_rate && rate > 0)
+    left = std::min(left, parameters.stop.final_strain / rate - time);
+  return left;
+}
+
+bool Simulation::must_stop(const IntegratorStep &step) const
+{
+  const StopCriteria &stop = parameters.stop;
+  return time_left() <= 1e-12 * stop.final_time || step_number >= stop.max_steps ||
+         (stop.final_plastic_strain > 0 && to_matrix(total_plastic_strain).norm() >= stop.final_plastic_strain) ||
+         (stop.equilibrium_speed > 0 && step_number > 1 && step.max_speed < stop.equilibrium_speed);
+}
+
+void Simulation::check_consistency() const
+{
+  if (parameters.output.check_network)
+    dislocations.check_invariants(1e-5);
+  std::uint64_t sums[2] = {dislocations.checksum(), ~dislocations.checksum()};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_UINT64_T, MPI_MAX, communicator);
+  if (sums[0] != ~sums[1])
+    throw std::runtime_error("the ranks hold different networks after step " + std::to_string(step_number));
+}
+
+RunEnd Simulation::run(RunOutput &output)
+{
+  start();
+  IntegratorStep step;
+  report(output, step, false);
+  while (!must_stop(step))
+  {
+    if (interrupted_anywhere(communicator))
+    {
+      report(output, step, true);
+      return RunEnd::interrupted;
+    }
+    step                    = move_lines();
+    TopologyContext context = topology_context(step.displacement);
+    change_topology(context);
+    book();
+    time += step.dt;
+    ++step_number;
+    check_consistency();
+    update_correction();
+    report(output, step, must_stop(step));
+  }
+  return RunEnd::finished;
+}
+
+NodalForces Simulation::forces()
+{
+  return compute_nodal_forces(dislocations, parameters.force_settings(), environment(true), communicator, true);
+}
+
+std::vector<SymTensor> Simulation::infinite_stress(const std::vector<Vec3> &points)
+{
+  return line_system().stress(points);
+}
+
+std::vector<SymTensor> Simulation::correction_stress(const std::vector<Vec3> &points) const
+{
+  if (!finite_grain)
+    return std::vector<SymTensor>(points.size(), SymTensor::Zero());
+  return finite_grain->correction_stress(points);
+}
+} // namespace ddfem::coupling

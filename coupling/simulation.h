@@ -1,0 +1,91 @@
+// The time loop.
+#pragma once
+
+#include "coupling/finite_grain.h"
+#include "coupling/initial_network.h"
+#include "coupling/parameters.h"
+#include "coupling/run_output.h"
+#include "coupling/timing.h"
+#include "dd/forces/nodal_forces.h"
+#include "dd/topology/topology_context.h"
+
+#include <memory>
+#include <mpi.h>
+#include <string>
+
+namespace ddfem::coupling
+{
+/// Why a run ended.
+enum class RunEnd
+{
+  finished,
+  interrupted ///< by SIGINT or SIGTERM
+};
+
+/// A network in its surroundings, and its motion. The network is replicated on all ranks of the communicator and changed
+/// identically everywhere.
+class Simulation
+{
+public:
+  /// Builds network and grain. Throws InputError for input that contradicts itself.
+  Simulation(const Parameters &parameters, MPI_Comm communicator);
+
+  /// Runs to a stop criterion. Throws std::runtime_error for numerical failure.
+  RunEnd run(RunOutput &output);
+
+  /// Takes the initial network as the reference state and solves its boundary-value problem (finite mode; nothing otherwise).
+  void start();
+
+  /// Nodal forces of the present state, with contributions.
+  NodalForces forces();
+  /// Infinite-body and correction stress (zero outside finite mode) at points, MPa.
+  std::vector<SymTensor> infinite_stress(const std::vector<Vec3> &points);
+  std::vector<SymTensor> correction_stress(const std::vector<Vec3> &points) const;
+
+  /// What can be known before the run, in a few lines.
+  std::string summary() const;
+
+  const Network &network() const { return dislocations; }
+  const FiniteGrain *grain() const { return finite_grain.get(); }
+  const SymTensor &plastic_strain() const { return total_plastic_strain; }
+  /// Stress that acts on the dislocations besides their own fields in periodic and infinite mode, MPa.
+  SymTensor applied_stress() const;
+
+private:
+  LineSystem line_system();
+  ForceEnvironment environment(bool with_correction);
+  TopologyContext topology_context(std::vector<Vec3> displacement);
+  void update_correction();
+  IntegratorStep move_lines();
+  void change_topology(TopologyContext &context);
+  void book();
+  double nominal_strain() const;
+  double axial_plastic_strain() const;
+  double reference_volume() const;
+  double time_left() const;
+  bool must_stop(const IntegratorStep &step) const;
+  void check_consistency() const;
+  HistoryRow history_row(const IntegratorStep &step) const;
+  void report(RunOutput &output, const IntegratorStep &step, bool last);
+  std::string status_line(const IntegratorStep &step) const;
+
+  Parameters parameters;
+  MPI_Comm communicator;
+  Network dislocations;
+  std::unique_ptr<FiniteGrain> finite_grain;
+  std::unique_ptr<PeriodicImages> images;
+  ProductPlane product_plane;
+  StabilisedRungeKutta integrator;
+  SegmentPointStress correction;
+  GrainSolution solution;
+  SweptArea swept;
+  TopologyCounts counts;
+  SymTensor total_plastic_strain = SymTensor::Zero();
+  double time           = 0; ///< ns
+  unsigned step_number  = 0;
+  Timing timing;
+};
+
+/// Lets SIGINT and SIGTERM end runs at the next step instead of killing the program.
+void install_signal_handlers();
+} // namespace ddfem::coupling

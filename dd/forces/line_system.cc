@@ -1,0 +1,70 @@
+#include "dd/forces/line_system.h"
+
+#include "dd/elasticity/distance.h"
+#include "dd/elasticity/segment_stress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ddfem
+{
+LineSystem::LineSystem(const IsotropicMedium &medium_, const Network &network, const GrainShape *shape,
+                       const RayDirection rule, const PeriodicCell *cell_, PeriodicImages *images_)
+  : elastic_medium(medium_), shifts{Vec3::Zero()}, periodic_cell(cell_), images(images_)
+{
+  straight_lines.reserve(network.n_segments());
+  for (const SegmentIndex s : network.segments())
+  {
+    Vec3 start   = network.position(network.start(s));
+    const Vec3 t = network.direction(s);
+    if (periodic_cell)
+      start += periodic_cell->shift_into_cell(start + 0.5 * t);
+    straight_lines.push_back({start, start + t, network.burgers(s)});
+  }
+  if (shape)
+    virtual_ray_list = virtual_rays(network, *shape, rule);
+  if (images_)
+  {
+    shifts = images_->near_shifts();
+    std::vector<LineElement> elements;
+    elements.reserve(straight_lines.size());
+    for (const StraightLine &l : straight_lines)
+      elements.push_back({l.start, l.end, l.burgers});
+    images_->set_sources(elastic_medium, elements);
+  }
+}
+
+SymTensor LineSystem::stress(const Vec3 &point) const
+{
+  const Vec3 x  = periodic_cell ? Vec3(point + periodic_cell->shift_into_cell(point)) : point;
+  SymTensor sum = SymTensor::Zero();
+  for (const StraightLine &l : straight_lines)
+    for (const Vec3 &shift : shifts)
+      sum += segment_stress(elastic_medium, x - shift, l.start, l.end, l.burgers);
+  for (const VirtualRay &r : virtual_ray_list)
+    sum += ray_stress(elastic_medium, x, r.origin, r.direction, r.burgers);
+  if (images)
+    sum += images->far_stress(x);
+  return sum;
+}
+
+std::vector<SymTensor> LineSystem::stress(std::span<const Vec3> points) const
+{
+  std::vector<SymTensor> values(points.size());
+#pragma omp parallel for schedule(dynamic, 16)
+  for (std::size_t i = 0; i < points.size(); ++i)
+    values[i] = stress(points[i]);
+  return values;
+}
+
+double LineSystem::distance(const Vec3 &x) const
+{
+  double d = std::numeric_limits<double>::infinity();
+  for (const StraightLine &l : straight_lines)
+    d = std::min(d, std::sqrt(distance_point_segment(x, l.start, l.end).squared));
+  for (const VirtualRay &r : virtual_ray_list)
+    d = std::min(d, std::sqrt(distance_point_ray(x, r.origin, r.direction).squared));
+  return d;
+}
+} // namespace ddfem

@@ -1,0 +1,55 @@
+// Everything that makes up the infinite-body field: the network's segments, virtual rays, periodic images.
+#pragma once
+
+#include "dd/elasticity/isotropic.h"
+#include "dd/forces/periodic_images.h"
+#include "dd/forces/virtual_rays.h"
+#include "dd/geometry/periodic_cell.h"
+#include "dd/network/network.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace ddfem
+{
+/// A straight piece of line as the kernels see it.
+struct StraightLine
+{
+  Vec3 start, end, burgers;
+};
+
+/// Snapshot of the sources of the `infinite` field. In a periodic cell `lines` are shifted so that their mid-points lie
+/// in the primary cell, and `far_images` holds the field of all images beyond the 26 neighbours.
+class LineSystem
+{
+public:
+  /// @p shape: the finite grain, or null; @p images: the periodic cell's image operator, or null (it is updated).
+  LineSystem(const IsotropicMedium &medium, const Network &network, const GrainShape *shape, RayDirection rule,
+             const PeriodicCell *cell, PeriodicImages *images);
+
+  const IsotropicMedium &medium() const { return elastic_medium; }
+  /// In the order of Network::segments().
+  const std::vector<StraightLine> &lines() const { return straight_lines; }
+  const std::vector<VirtualRay> &rays() const { return virtual_ray_list; }
+  /// Shifts of the near images (zero first); a single zero without periodicity.
+  const std::vector<Vec3> &image_shifts() const { return shifts; }
+  const PeriodicImages *far_images() const { return images; }
+  const PeriodicCell *cell() const { return periodic_cell; }
+
+  /// Infinite-body stress (dislocations only, no applied stress) at a point, MPa.
+  SymTensor stress(const Vec3 &x) const;
+  /// The same at many points, threaded; independent of the number of threads.
+  std::vector<SymTensor> stress(std::span<const Vec3> points) const;
+  /// Distance from @p x to the nearest line or ray, nm (infinity without lines); images not considered.
+  double distance(const Vec3 &x) const;
+
+private:
+  IsotropicMedium elastic_medium;
+  std::vector<StraightLine> straight_lines;
+  std::vector<VirtualRay> virtual_ray_list;
+  std::vector<Vec3> shifts;
+  const PeriodicCell *periodic_cell;
+  const PeriodicImages *images;
+};
+} // namespace ddfem

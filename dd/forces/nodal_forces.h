@@ -1,0 +1,70 @@
+// Nodal forces of the network, contribution by contribution.
+#pragma once
+
+#include "dd/elasticity/segment_force.h"
+#include "dd/forces/line_system.h"
+
+#include <mpi.h>
+
+#include <array>
+#include <vector>
+
+namespace ddfem
+{
+/// Who adds to the nodal force.
+enum class ForceContribution : std::uint8_t
+{
+  applied,    ///< uniform applied stress
+  self,       ///< elastic self force of each segment
+  core,       ///< core energy (line tension)
+  pairs,      ///< other segments of the network
+  rays,       ///< virtual rays outside a finite grain
+  images,     ///< periodic images
+  correction, ///< FEM correction field
+};
+inline constexpr std::size_t n_force_contributions = 7;
+const char *name_of(ForceContribution c);
+
+/// Number of Gauss points per segment at which external stress fields act.
+inline constexpr std::size_t n_segment_points = 3;
+
+/// Stress (MPa) at the Gauss points of all segments, in the order of Network::segments(), n_segment_points each.
+using SegmentPointStress = std::vector<SymTensor>;
+
+/// Positions (nm) of those Gauss points.
+std::vector<Vec3> segment_points(const Network &network);
+
+struct ForceSettings
+{
+  IsotropicMedium medium;
+  /// Radius at which the core energy makes the total line energy end, nm: E_core = mu/(4 pi) ln(a / r_c) (b_s^2 + b_e^2/(1-nu)).
+  double core_cutoff_radius = 0.0;
+  /// Error of a pair's nodal forces relative to their largest component.
+  double pair_tolerance = 1e-5;
+  RayDirection ray_direction = RayDirection::normal;
+};
+
+/// External fields and surroundings of the network.
+struct ForceEnvironment
+{
+  SymTensor applied                    = SymTensor::Zero(); ///< uniform, MPa
+  const GrainShape *shape              = nullptr;           ///< finite grain
+  const PeriodicCell *cell             = nullptr;
+  PeriodicImages *images               = nullptr;
+  const SegmentPointStress *correction = nullptr; ///< empty pointer: none
+};
+
+/// Nodal forces, MPa nm^2 (= 1e-12 N), sample frame, indexed by NodeIndex::value.
+struct NodalForces
+{
+  std::vector<Vec3> total;
+  std::array<std::vector<Vec3>, n_force_contributions> by_contribution; ///< filled on request
+  /// Total force on the two ends of each segment, indexed by SegmentIndex::value.
+  std::vector<SegmentForces> segment_ends;
+};
+
+/// Computes the nodal forces by direct summation over all pairs. The work is divided among the ranks of @p comm and
+/// the threads; every force is a sum in fixed order, so the result is bitwise the same on any number of either.
+NodalForces compute_nodal_forces(const Network &network, const ForceSettings &settings,
+                                 const ForceEnvironment &environment, MPI_Comm comm, bool with_contributions = false);
+} // namespace ddfem

@@ -1,0 +1,47 @@
+// Frank-Read sources and polygonal loops.
+#pragma once
+
+#include "dd/crystal/miller.h"
+#include "dd/crystal/orientation.h"
+#include "dd/network/network.h"
+
+#include <vector>
+
+namespace ddfem
+{
+/// A straight segment pinned at both ends. Lengths in nm, sample frame.
+struct FrankReadSource
+{
+  Miller plane{};              ///< crystal frame
+  Vec3 burgers = Vec3::Zero(); ///< nm
+  Vec3 centre  = Vec3::Zero();
+  double length          = 0.0;
+  double character_angle = 90.0; ///< between line and Burgers vector, degrees: 0 screw, 90 edge
+};
+
+/// A closed regular polygon. A Burgers vector in its plane makes a glide loop; otherwise each side glides on the plane
+/// of its direction and b (prismatic or mixed loop).
+struct PolygonLoop
+{
+  Miller plane{};
+  Vec3 burgers = Vec3::Zero(); ///< nm
+  Vec3 centre  = Vec3::Zero();
+  double radius    = 0.0; ///< of the corners
+  unsigned corners = 24;
+};
+
+/// Adds the source, divided into equal segments not longer than @p max_segment (two at least). Line direction in the
+/// plane: cos(angle) b/|b| + sin(angle) n x b/|b|. Throws std::invalid_argument if b is not in the plane or a length is
+/// not positive.
+void add_frank_read_source(Network &network, const Orientation &orientation, const FrankReadSource &source,
+                           double max_segment);
+
+/// Adds the loop, counter-clockwise about the plane's normal. Throws std::invalid_argument for fewer than three corners
+/// or a radius that is not positive.
+void add_polygon_loop(Network &network, const Orientation &orientation, const PolygonLoop &loop, double max_segment);
+
+/// Adds the open or closed chain of @p points with one Burgers vector and plane; the ends of an open chain get
+/// @p end_constraint. Returns the nodes.
+std::vector<NodeIndex> add_line(Network &network, const std::vector<Vec3> &points, const Vec3 &burgers,
+                                PlaneIndex plane, bool closed, NodeConstraint end_constraint);
+} // namespace ddfem

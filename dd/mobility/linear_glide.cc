@@ -1,0 +1,81 @@
+#include "dd/mobility/linear_glide.h"
+
+#include <array>
+
+namespace ddfem
+{
+namespace
+{
+/// Orthonormal basis of the forbidden directions, grown one normal at a time.
+class ForbiddenDirections
+{
+public:
+  void add(const Vec3 &normal)
+  {
+    if (count == 3)
+      return;
+    Vec3 r = normal;
+    for (std::size_t k = 0; k < count; ++k)
+      r -= r.dot(basis[k]) * basis[k];
+    // Normals closer than half a degree count as parallel: planes of one crystal are never that close.
+    if (r.norm() > 1e-2)
+      basis[count++] = r.normalized();
+  }
+
+  Mat3 projector() const
+  {
+    if (count == 3)
+      return Mat3::Zero();
+    Mat3 p = Mat3::Identity();
+    for (std::size_t k = 0; k < count; ++k)
+      p -= basis[k] * basis[k].transpose();
+    return p;
+  }
+
+private:
+  std::array<Vec3, 3> basis;
+  std::size_t count = 0;
+};
+} // namespace
+
+Mat3 glide_projector(const Network &network, const NodeIndex i, const GrainShape *shape)
+{
+  if (network.constraint(i) == NodeConstraint::pinned)
+    return Mat3::Zero();
+  ForbiddenDirections forbidden;
+  for (const SegmentIndex s : network.connected_segments(i))
+  {
+    if (!network.plane(s).is_valid())
+      return Mat3::Zero();
+    forbidden.add(network.normal(s));
+  }
+  if (network.constraint(i) == NodeConstraint::surface && shape)
+    forbidden.add(shape->outward_normal(network.position(i)));
+  return forbidden.projector();
+}
+
+double nodal_drag(const Network &network, const NodeIndex i, const LinearGlide &law)
+{
+  double drag = 0;
+  for (const SegmentIndex s : network.connected_segments(i))
+  {
+    const Vec3 t        = network.direction(s);
+    const double length = t.norm();
+    const double cosine = t.dot(network.burgers(s)) / (length * network.burgers(s).norm());
+    drag += 0.5 * length * (law.drag_edge + (law.drag_screw - law.drag_edge) * cosine * cosine);
+  }
+  return drag;
+}
+
+std::vector<Vec3> glide_velocities(const Network &network, const std::vector<Vec3> &force, const LinearGlide &law,
+                                   const GrainShape *shape)
+{
+  std::vector<Vec3> velocity(network.node_capacity(), Vec3::Zero());
+  network.for_each_node([&](const NodeIndex i) {
+    const double drag = nodal_drag(network, i, law);
+    if (drag > 0)
+      velocity[i.value] = glide_projector(network, i, shape) * force[i.value] / drag;
+  });
+  return velocity;
+}
+} // namespace ddfem

@@ -1,0 +1,30 @@
+// Linear viscous glide.
+#pragma once
+
+#include "dd/geometry/grain_shape.h"
+#include "dd/network/network.h"
+
+#include <vector>
+
+namespace ddfem
+{
+/// Phonon drag per length of line, MPa ns (1e-3 Pa s = 1 MPa ns). Between the characters
+/// B(theta) = B_screw cos^2 theta + B_edge sin^2 theta, theta the angle between line and Burgers vector.
+struct LinearGlide
+{
+  double drag_edge  = 0.0;
+  double drag_screw = 0.0;
+};
+
+/// Directions in which a node may move: the orthogonal projector on them. Zero for pinned nodes and where the glide
+/// planes of the arms (and the surface, for surface nodes) leave none. An arm without a glide plane is sessile.
+Mat3 glide_projector(const Network &network, NodeIndex i, const GrainShape *shape);
+
+/// Drag of a node, MPa ns nm: half of B(theta) L of each arm.
+double nodal_drag(const Network &network, NodeIndex i, const LinearGlide &law);
+
+/// Local nodal velocities v = P f / (sum over arms of B(theta) L / 2), nm/ns, indexed by NodeIndex::value.
+/// @p force: nodal forces, MPa nm^2.
+std::vector<Vec3> glide_velocities(const Network &network, const std::vector<Vec3> &force, const LinearGlide &law,
+                                   const GrainShape *shape);
+} // namespace ddfem

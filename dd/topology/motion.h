@@ -1,0 +1,19 @@
+// Moving the nodes to their new positions; lines that reach the boundary of the grain.
+#pragma once
+
+#include "dd/topology/topology_context.h"
+
+namespace ddfem
+{
+/// Moves every node by @p fraction of its remaining displacement. In a finite grain a node that reaches a free face
+/// stops there and its line is cut: each arm ends in a surface node of its own and continues outside as a virtual ray. At an
+/// impenetrable face a node slides along the face in its glide plane. Surface nodes slide in (face) x (glide plane).
+void move_nodes(TopologyContext &context, double fraction);
+
+/// Removes the pieces of line that lie in the surface (both ends are surface nodes and the middle is nearer to the surface
+/// than a tenth of the length): the line has left there.
+void remove_surface_segments(TopologyContext &context);
+
+/// Removes segment @p s, whose ends are surface nodes, by letting it leave through the surface between them.
+void leave_through_surface(TopologyContext &context, SegmentIndex s);
+} // namespace ddfem
