@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace ddfem::coupling
 {
@@ -71,10 +72,11 @@ AxisPlane plane_of_face(const std::vector<PolyhedronShape::Facet> &facets, const
 }
 } // namespace
 
-std::pair<double, double> imbalance(const fem::TractionSummary &t)
+std::pair<double, double> imbalance(const fem::TractionSummary &t, const double force_scale, const double length_scale)
 {
-  return {t.absolute_force > 0 ? t.force.norm() / t.absolute_force : 0.0,
-          t.absolute_moment > 0 ? t.moment.norm() / t.absolute_moment : 0.0};
+  constexpr double rounding = 1e-6;
+  return {t.force.norm() / std::max(t.absolute_force, rounding * force_scale),
+          t.moment.norm() / std::max(t.absolute_moment, rounding * force_scale * length_scale)};
 }
 
 FiniteGrain::FiniteGrain(const GrainParameters &grain_parameters, const IsotropicMedium &elastic_medium, MPI_Comm comm)
@@ -210,6 +212,9 @@ GrainSolution FiniteGrain::solve(const LineSystem &lines, const double u)
 {
   GrainSolution solution;
   solution.tractions       = problem->set_tractions(DislocationTractions(lines));
+  const double diameter    = grain_shape->diameter();
+  std::tie(solution.force_imbalance, solution.moment_imbalance) =
+    imbalance(solution.tractions, medium.mu * medium.a * diameter, diameter);
   solution.solve           = problem->solve(prescribed(u));
   const auto component     = static_cast<unsigned>(axis);
   solution.fixed_reaction  = -platen_sign * problem->reaction(fixed_face)[component];

@@ -11,6 +11,7 @@
 #include <memory>
 #include <mpi.h>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ddfem::coupling
@@ -19,6 +20,7 @@ namespace ddfem::coupling
 struct GrainSolution
 {
   fem::TractionSummary tractions; ///< of the infinite field over the closed surface: must balance
+  double force_imbalance = 0, moment_imbalance = 0; ///< see imbalance()
   fem::SolveInfo solve;
   double fixed_reaction  = 0; ///< force on the grain along the outward platen normal, at the fixed face, MPa nm^2
   double platen_reaction = 0; ///< the same at the platen; tension positive
@@ -80,6 +82,7 @@ private:
 
 /// Largest acceptable ratio of the net force (moment) of the infinite field's tractions to the integral of their magnitudes.
 inline constexpr double max_imbalance = 1e-4;
-/// The two ratios, force and moment; zero without tractions.
-std::pair<double, double> imbalance(const fem::TractionSummary &t);
+/// The two ratios, force and moment. @p force_scale (MPa nm^2) and @p length_scale (nm): magnitudes below a millionth of them are
+/// rounding, such as the field of a line on top of its own negative.
+std::pair<double, double> imbalance(const fem::TractionSummary &t, double force_scale, double length_scale);
 } // namespace ddfem::coupling

@@ -56,6 +56,7 @@ Simulation::Simulation(const Parameters &p, MPI_Comm comm)
   {
     finite_grain = std::make_unique<FiniteGrain>(p.grain, p.medium, communicator);
     fit_into_grain(dislocations, finite_grain->shape(), p.topology.min_segment);
+    initial_open_lines = open_lines(dislocations, &finite_grain->shape(), p.grain.ray_direction);
     if (p.grain.reference == ReferenceState::perfect_crystal)
     {
       try
@@ -82,6 +83,13 @@ LineSystem Simulation::line_system()
           parameters.grain.ray_direction,
           images ? &parameters.cell : nullptr,
           images.get()};
+}
+
+LineSystem Simulation::closed_line_system()
+{
+  LineSystem lines = line_system();
+  lines.close(initial_open_lines);
+  return lines;
 }
 
 ForceEnvironment Simulation::environment(const bool with_correction)
@@ -127,19 +135,18 @@ void Simulation::update_correction()
   if (!finite_grain)
     return;
   const Timing::Scope scope(timing, "elastic solve");
-  solution = finite_grain->solve(line_system(), nominal_strain() * finite_grain->height());
-  const auto [force, moment] = imbalance(solution.tractions);
-  if (force > max_imbalance || moment > max_imbalance)
+  solution = finite_grain->solve(closed_line_system(), nominal_strain() * finite_grain->height());
+  if (solution.force_imbalance > max_imbalance || solution.moment_imbalance > max_imbalance)
     throw std::runtime_error("the tractions of the dislocations over the closed surface do not balance: net force " +
-                             std::to_string(force) + ", net moment " + std::to_string(moment) +
-                             " of the sum of their magnitudes");
+                             std::to_string(solution.force_imbalance) + ", net moment " +
+                             std::to_string(solution.moment_imbalance) + " of the sum of their magnitudes");
   correction = finite_grain->correction_stress(segment_points(dislocations));
 }
 
 void Simulation::start()
 {
   if (finite_grain)
-    finite_grain->set_reference(dislocations, line_system());
+    finite_grain->set_reference(dislocations, closed_line_system());
   update_correction();
 }
 

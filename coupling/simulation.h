@@ -53,6 +53,8 @@ public:
 
 private:
   LineSystem line_system();
+  /// The sources of the boundary-value problem: with open lines closed by their initial position.
+  LineSystem closed_line_system();
   ForceEnvironment environment(bool with_correction);
   TopologyContext topology_context(std::vector<Vec3> displacement);
   void update_correction();
@@ -74,6 +76,7 @@ private:
   Network dislocations;
   std::unique_ptr<FiniteGrain> finite_grain;
   std::unique_ptr<PeriodicImages> images;
+  OpenLines initial_open_lines;
   ProductPlane product_plane;
   StabilisedRungeKutta integrator;
   SegmentPointStress correction;

@@ -35,6 +35,14 @@ LineSystem::LineSystem(const IsotropicMedium &medium_, const Network &network, c
   }
 }
 
+void LineSystem::close(const OpenLines &open)
+{
+  for (const StraightLine &l : open.lines)
+    straight_lines.push_back({l.start, l.end, -l.burgers});
+  for (const VirtualRay &r : open.rays)
+    virtual_ray_list.push_back({r.origin, r.direction, -r.burgers});
+}
+
 SymTensor LineSystem::stress(const Vec3 &point) const
 {
   const Vec3 x  = periodic_cell ? Vec3(point + periodic_cell->shift_into_cell(point)) : point;

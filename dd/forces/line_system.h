@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dd/elasticity/isotropic.h"
+#include "dd/forces/open_lines.h"
 #include "dd/forces/periodic_images.h"
 #include "dd/forces/virtual_rays.h"
 #include "dd/geometry/periodic_cell.h"
@@ -13,12 +14,6 @@
 
 namespace ddfem
 {
-/// A straight piece of line as the kernels see it.
-struct StraightLine
-{
-  Vec3 start, end, burgers;
-};
-
 /// Snapshot of the sources of the `infinite` field. In a periodic cell `lines` are shifted so that their mid-points lie
 /// in the primary cell, and `far_images` holds the field of all images beyond the 26 neighbours.
 class LineSystem
@@ -28,8 +23,11 @@ public:
   LineSystem(const IsotropicMedium &medium, const Network &network, const GrainShape *shape, RayDirection rule,
              const PeriodicCell *cell, PeriodicImages *images);
 
+  /// Adds @p open with opposite Burgers vectors: the sources of the field become closed lines (see OpenLines).
+  void close(const OpenLines &open);
+
   const IsotropicMedium &medium() const { return elastic_medium; }
-  /// In the order of Network::segments().
+  /// In the order of Network::segments(), followed by what close() has added.
   const std::vector<StraightLine> &lines() const { return straight_lines; }
   const std::vector<VirtualRay> &rays() const { return virtual_ray_list; }
   /// Shifts of the near images (zero first); a single zero without periodicity.
