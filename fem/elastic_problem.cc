@@ -41,7 +41,7 @@ public:
     , system(grid, flags_of(condition_of), lame_lambda(moduli), moduli.mu, volume_centre.second,
              std::cbrt(volume_centre.first))
     , boundary_load(grid, volume_centre.second, given.traction_tolerance)
-    , recovery(grid, lame_lambda(moduli), moduli.mu)
+    , recovery(grid, lame_lambda(moduli), moduli.mu, given.recovery == Recovery::patches)
     , locator(grid, given.outside_tolerance)
     , field_load(system.make_vector())
     , uniform_load(system.make_vector())

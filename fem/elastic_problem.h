@@ -53,6 +53,13 @@ struct SolveInfo
 class ElasticProblem
 {
 public:
+  /// How the stress becomes continuous.
+  enum class Recovery
+  {
+    patches, ///< least-squares fits around vertices (Zienkiewicz & Zhu, IJNME 33 (1992) 1331)
+    averages ///< extrapolation from the Gauss points, averaged at nodes; steadier where the mesh does not resolve the field
+  };
+
   struct Parameters
   {
     /// Degree of the elements and of the mapping, 1 or 2.
@@ -65,6 +72,7 @@ public:
     /// Start from that combination of the last two solutions which is best in the energy norm (Fischer, CMAME 163 (1998) 193)
     /// instead of the last one as it is.
     bool extrapolate = true;
+    Recovery recovery = Recovery::patches;
     /// Points that lie farther outside the mesh than this fraction of a cell are errors in stress_at(), displacement_at().
     double outside_tolerance = 0.02;
   };

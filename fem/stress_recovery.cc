@@ -16,7 +16,8 @@ double gauss_lagrange(unsigned n, unsigned k, const CubeRule& rule, double x)
 }
 } // namespace
 
-StressRecovery::StressRecovery(const NodalGrid& nodal_grid, double lame_lambda, double shear_modulus)
+StressRecovery::StressRecovery(const NodalGrid& nodal_grid, double lame_lambda, double shear_modulus,
+                               bool by_patches)
   : grid(nodal_grid)
   , lambda(lame_lambda)
   , mu(shear_modulus)
@@ -53,6 +54,10 @@ StressRecovery::StressRecovery(const NodalGrid& nodal_grid, double lame_lambda, 
   {
     weights.push_back(1. / counts.local_element(3 * node));
   }
+  if (by_patches)
+  {
+    patches = std::make_unique<PatchFit>(grid, rule.points);
+  }
 }
 
 void StressRecovery::make_extrapolation(const CubeRule& rule)
@@ -75,7 +80,7 @@ void StressRecovery::make_extrapolation(const CubeRule& rule)
 }
 
 void StressRecovery::stress_at_gauss_points(unsigned cell, const NodalVector& displacement,
-                                            std::vector<std::array<double, 6>>& stress) const
+                                            std::array<double, 6>* stress) const
 {
   const unsigned* const nodes = grid.nodes_of(cell);
   for (unsigned q = 0; q < n_points; ++q)
@@ -108,11 +113,28 @@ void StressRecovery::stress_at_gauss_points(unsigned cell, const NodalVector& di
 
 std::vector<double> StressRecovery::recover(const NodalVector& displacement) const
 {
-  NodalVector normal(grid.partitioner), shear(grid.partitioner);
-  std::vector<std::array<double, 6>> stress(n_points);
+  std::vector<std::array<double, 6>> stress(std::size_t{grid.n_cells()} * n_points);
   for (unsigned cell = 0; cell < grid.n_cells(); ++cell)
   {
-    stress_at_gauss_points(cell, displacement, stress);
+    stress_at_gauss_points(cell, displacement, &stress[std::size_t{cell} * n_points]);
+  }
+  std::vector<double> result = averages(stress);
+  if (patches)
+  {
+    const std::vector<double> fitted = patches->nodal_values(stress);
+    for (unsigned i = 0; i < result.size(); ++i)
+    {
+      result[i] = patches->covered(i / 6) ? fitted[i] : result[i];
+    }
+  }
+  return result;
+}
+
+std::vector<double> StressRecovery::averages(const std::vector<std::array<double, 6>>& stress) const
+{
+  NodalVector normal(grid.partitioner), shear(grid.partitioner);
+  for (unsigned cell = 0; cell < grid.n_cells(); ++cell)
+  {
     for (unsigned a = 0; a < grid.nodes_per_cell; ++a)
     {
       const unsigned first = 3 * grid.nodes_of(cell)[a];
@@ -120,8 +142,8 @@ std::vector<double> StressRecovery::recover(const NodalVector& displacement) con
       {
         for (unsigned c = 0; c < 3; ++c)
         {
-          normal.local_element(first + c) += extrapolation[a][q] * stress[q][c];
-          shear.local_element(first + c) += extrapolation[a][q] * stress[q][3 + c];
+          normal.local_element(first + c) += extrapolation[a][q] * stress[std::size_t{cell} * n_points + q][c];
+          shear.local_element(first + c) += extrapolation[a][q] * stress[std::size_t{cell} * n_points + q][3 + c];
         }
       }
     }

@@ -25,11 +25,10 @@ Vec3 displacement_at(const TopologyContext &c, const SegmentIndex s, const doubl
   return (1 - parameter) * c.remaining[n.start(s).value] + parameter * c.remaining[n.end(s).value];
 }
 
-/// Contact of two segments without a common node, if they are near and approaching.
-std::optional<Contact> find_contact(const TopologyContext &c, const SegmentIndex s1, const SegmentIndex s2)
+/// Nearest points of two segments without a common node, if they are within @p r.
+std::optional<Contact> find_near(const TopologyContext &c, const SegmentIndex s1, const SegmentIndex s2, const double r)
 {
   const Network &n = c.network;
-  const double r   = c.settings.collision_radius;
   const Vec3 a1 = n.position(n.start(s1)), t1 = n.direction(s1), t2 = n.direction(s2);
   const Vec3 middle1 = a1 + 0.5 * t1;
   const Vec3 middle2 = middle1 + n.minimum_image(n.position(n.start(s2)) + 0.5 * t2 - middle1);
@@ -39,16 +38,12 @@ std::optional<Contact> find_contact(const TopologyContext &c, const SegmentIndex
   const PairDistance d = distance_segment_segment(a1, a1 + t1, a2, a2 + t2);
   if (d.squared > r * r)
     return std::nullopt;
-  const Contact contact{d.first, d.second, a2 + d.second * t2 - a1 - d.first * t1};
-  const Vec3 relative   = displacement_at(c, s2, contact.t) - displacement_at(c, s1, contact.s);
-  const bool touching   = d.squared < 1e-18;
-  const bool approaching = relative.dot(contact.separation) < 0;
-  return touching || approaching ? std::optional(contact) : std::nullopt;
+  return Contact{d.first, d.second, a2 + d.second * t2 - a1 - d.first * t1};
 }
 
-/// Two arms of node o that close like scissors: the end of the shorter meets the longer.
-std::optional<Contact> find_hinge_contact(const TopologyContext &c, const SegmentIndex s1, const SegmentIndex s2,
-                                          const NodeIndex o)
+/// Two arms of node o that close like scissors: the end of the shorter and the nearest point of the longer, if within @p r.
+std::optional<Contact> find_near_hinge(const TopologyContext &c, const SegmentIndex s1, const SegmentIndex s2,
+                                       const NodeIndex o, const double r)
 {
   const Network &n = c.network;
   const Vec3 t1    = (n.start(s1) == o ? 1.0 : -1.0) * n.direction(s1);
@@ -59,14 +54,11 @@ std::optional<Contact> find_hinge_contact(const TopologyContext &c, const Segmen
   const Vec3 &shorter = first_is_shorter ? t1 : t2, &longer = first_is_shorter ? t2 : t1;
   const double u        = std::clamp(shorter.dot(longer) / longer.squaredNorm(), 0.0, 1.0);
   const Vec3 separation = u * longer - shorter; // from the end of the shorter arm to the longer
-  if (separation.norm() > c.settings.collision_radius)
+  if (separation.norm() > r)
     return std::nullopt;
   const auto from_o = [&](const SegmentIndex s, const double v) { return n.start(s) == o ? v : 1 - v; };
-  Contact contact{from_o(s1, first_is_shorter ? 1.0 : u), from_o(s2, first_is_shorter ? u : 1.0),
-                  first_is_shorter ? separation : Vec3(-separation)};
-  const Vec3 relative = displacement_at(c, s2, contact.t) - displacement_at(c, s1, contact.s);
-  const bool touching = separation.norm() < 1e-9;
-  return touching || relative.dot(contact.separation) < 0 ? std::optional(contact) : std::nullopt;
+  return Contact{from_o(s1, first_is_shorter ? 1.0 : u), from_o(s2, first_is_shorter ? u : 1.0),
+                 first_is_shorter ? separation : Vec3(-separation)};
 }
 
 std::optional<NodeIndex> common_node(const Network &n, const SegmentIndex s1, const SegmentIndex s2)
@@ -75,6 +67,31 @@ std::optional<NodeIndex> common_node(const Network &n, const SegmentIndex s1, co
     if (i == n.start(s2) || i == n.end(s2))
       return i;
   return std::nullopt;
+}
+
+/// Nearest points of two different segments within @p r, with or without a common node.
+std::optional<Contact> find_pair(const TopologyContext &c, const SegmentIndex s1, const SegmentIndex s2, const double r)
+{
+  const auto shared = common_node(c.network, s1, s2);
+  return shared ? find_near_hinge(c, s1, s2, *shared, r) : find_near(c, s1, s2, r);
+}
+
+/// Whether the two points touch, or approach each other in this step.
+bool is_closing(const TopologyContext &c, const SegmentIndex s1, const SegmentIndex s2, const Contact &contact)
+{
+  const Vec3 relative = displacement_at(c, s2, contact.t) - displacement_at(c, s1, contact.s);
+  return contact.separation.norm() < 1e-9 || relative.dot(contact.separation) < 0;
+}
+
+/// Whether any two lines are within @p r, so that they might meet.
+bool any_within(const TopologyContext &c, const double r)
+{
+  const auto segments = c.network.segments();
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    for (std::size_t m = k + 1; m < segments.size(); ++m)
+      if (find_pair(c, segments[k], segments[m], r))
+        return true;
+  return false;
 }
 
 /// Point nearest to @p x that lies on the glide planes of all arms of both nodes (through the nodes' own positions: in a
@@ -164,9 +181,8 @@ std::size_t collide_once(TopologyContext &context)
         break;
       if (!n.contains(s2))
         continue;
-      const auto shared  = common_node(n, s1, s2);
-      const auto contact = shared ? find_hinge_contact(context, s1, s2, *shared) : find_contact(context, s1, s2);
-      if (contact && merge_at_contact(context, s1, s2, *contact))
+      const auto contact = find_pair(context, s1, s2, context.settings.collision_radius);
+      if (contact && is_closing(context, s1, s2, *contact) && merge_at_contact(context, s1, s2, *contact))
         ++events;
     }
   return events;
@@ -178,7 +194,10 @@ unsigned motion_substeps(const TopologyContext &context)
   double largest = 0;
   for (const NodeIndex i : context.network.nodes())
     largest = std::max(largest, context.remaining[i.value].norm());
-  return std::max(1U, static_cast<unsigned>(std::ceil(2 * largest / context.settings.collision_radius)));
+  const double radius = context.settings.collision_radius;
+  if (!any_within(context, radius + 2 * largest))
+    return 1;
+  return std::max(1U, static_cast<unsigned>(std::ceil(2 * largest / radius)));
 }
 
 void collide(TopologyContext &context)

@@ -6,7 +6,8 @@
 namespace ddfem
 {
 /// Number of equal parts into which the remaining displacements must be divided so that no two lines approach each other
-/// by more than the collision radius between two calls of collide(): a pair cannot pass through each other unseen.
+/// by more than the collision radius between two calls of collide(): a pair cannot pass through each other unseen. One where no
+/// two lines are near enough to meet at all.
 unsigned motion_substeps(const TopologyContext &context);
 
 /// Merges every pair of lines that is closer than the collision radius and approaching, in the order of the segments'
