@@ -22,8 +22,8 @@ struct GrainSolution
   fem::TractionSummary tractions; ///< of the infinite field over the closed surface: must balance
   double force_imbalance = 0, moment_imbalance = 0; ///< see imbalance()
   fem::SolveInfo solve;
-  double fixed_reaction  = 0; ///< force on the grain along the outward platen normal, at the fixed face, MPa nm^2
-  double platen_reaction = 0; ///< the same at the platen; tension positive
+  double fixed_reaction  = 0; ///< force on the grain along the outward normal of the fixed face, MPa nm^2; tension positive
+  double platen_reaction = 0; ///< the same at the platen
 };
 
 /// Mesh, boundary conditions and correction field of a finite grain. Collective over the communicator. Loading axis: the
@@ -44,7 +44,7 @@ public:
   /// Nominal stress per nominal strain of the grain under its own boundary conditions (one solve without dislocations), MPa.
   double unit_load_modulus() const { return modulus; }
 
-  /// Takes the state of the network as the one that prescribed displacements are counted from (DESIGN section 4): relaxed
+  /// Takes the state of the network as the one that prescribed displacements are counted from: relaxed
   /// with all surfaces traction-free, or grown from nothing in a perfect crystal.
   void set_reference(const Network &network, const LineSystem &lines);
   /// Adds the displacement of the swept triangles to u~ at all boundary nodes.

@@ -29,7 +29,12 @@ Network read_network(const Parameters &p)
   options.strict            = true;
   try
   {
-    return read_paradis_data(p.network_file, options).network;
+    ParadisData data = read_paradis_data(p.network_file, options);
+    const Vec3 edges = data.upper - data.lower;
+    if (p.mode == Mode::periodic && (edges - p.cell.lengths).norm() > 1e-6 * edges.norm())
+      throw InputError(p.network_file + ": the periodic cell of the file has edges " + in_metres(edges) +
+                       ", Domain/Size is " + in_metres(p.cell.lengths));
+    return std::move(data.network);
   }
   catch (const FileError &e)
   {
@@ -47,6 +52,15 @@ Network build_network(const Parameters &p)
     add_frank_read_source(network, p.orientation, source, 0.75 * p.topology.max_segment);
   for (const PolygonLoop &loop : p.loops)
     add_polygon_loop(network, p.orientation, loop, p.topology.max_segment);
+  const SlipSystems systems = p.slip_systems();
+  for (const SegmentIndex s : network.segments())
+    if (network.plane(s).is_valid() && systems.glissile_planes(network.burgers(s)).empty())
+      throw InputError("Microstructure: segment " + std::to_string(network.id(s)) + " has the Burgers vector " +
+                       in_metres(network.burgers(s)) + ", which is no a/2<110> of this crystal");
+  for (const NodeIndex i : network.nodes())
+    if (p.mode != Mode::finite && network.constraint(i) == NodeConstraint::surface)
+      throw InputError("Microstructure: node " + std::to_string(network.id(i)) +
+                       " is a surface node; only a finite grain has a surface");
   const auto violations = network.violations();
   if (!violations.empty())
     throw InputError("Microstructure: " + violations.front().message);

@@ -23,6 +23,17 @@ std::string trim(const std::string &s)
   return s.substr(first, s.find_last_not_of(" \t\r") - first + 1);
 }
 
+/// @p s with commas and runs of blanks replaced by single blanks.
+std::string single_blanks(std::string s)
+{
+  std::replace(s.begin(), s.end(), ',', ' ');
+  std::istringstream in(s);
+  std::string result;
+  for (std::string word; in >> word;)
+    result += (result.empty() ? "" : " ") + word;
+  return result;
+}
+
 std::size_t edit_distance(const std::string &a, const std::string &b)
 {
   std::vector<std::size_t> row(b.size() + 1);
@@ -50,16 +61,31 @@ const ParameterEntry *find_entry(const std::string &path)
   return nullptr;
 }
 
-std::string unit_suffix(const ParameterEntry &e)
-{
-  return e.unit.empty() ? "" : " in " + e.unit;
-}
-
 /// What an entry allows, in words.
 std::string allowed_values(const ParameterEntry &e)
 {
-  return e.pattern->description(dealii::Patterns::PatternBase::Text) + unit_suffix(e);
+  std::string text = e.pattern->description(dealii::Patterns::PatternBase::Text);
+  const std::vector<std::pair<std::string, std::string>> plain_words{
+    {"A floating point number v such that 2.22507e-308 <= v <= MAX_DOUBLE", "a positive number"},
+    {"A floating point number v such that 0 <= v <= MAX_DOUBLE", "a number not below zero"},
+    {"A floating point number v such that -MAX_DOUBLE <= v <= MAX_DOUBLE", "a number"},
+    {"A floating point number v such that", "a number v with"},
+    {"An integer n such that", "an integer n with"},
+    {"<= n <= 2147483647", "<= n"},
+    {"Any one of", "one of"},
+    {"A boolean value (true or false)", "true or false"},
+    {"Any string", "text"}};
+  for (const auto &[from, to] : plain_words)
+    if (const auto at = text.find(from); at != std::string::npos)
+      text.replace(at, from.size(), to);
+  return text;
 }
+
+std::string unit_suffix(const ParameterEntry &e)
+{
+  return e.unit.empty() ? "" : ", in " + e.unit;
+}
+
 
 std::string unknown_entry_message(const std::string &path)
 {
@@ -132,14 +158,17 @@ InputDeck::InputDeck()
     values[e.path()] = e.default_value;
 }
 
-void InputDeck::set(const std::string &path, const std::string &value, const std::string &where)
+void InputDeck::set(const std::string &path, const std::string &given, const std::string &where)
 {
   const ParameterEntry *entry = find_entry(path);
   if (!entry)
     throw InputError(where + ": " + unknown_entry_message(path));
+  // Lists of numbers are separated by single blanks for deal.II, by any blanks or commas for people.
+  const bool is_list      = dynamic_cast<const dealii::Patterns::List *>(entry->pattern.get()) != nullptr;
+  const std::string value = is_list ? single_blanks(given) : given;
   if (!entry->pattern->match(value))
     throw InputError(where + ": " + path + " = " + (value.empty() ? "(empty)" : value) + ": allowed is " +
-                     allowed_values(*entry));
+                     allowed_values(*entry) + unit_suffix(*entry));
   values[path] = value;
   origin[path] = where;
 }
@@ -164,6 +193,7 @@ void InputDeck::read_prm(const std::string &file)
   {
     const std::string where = file + ":" + std::to_string(number);
     line                    = trim(line.substr(0, line.find('#')));
+    std::replace(line.begin(), line.end(), '\t', ' ');
     while (!line.empty() && line.back() == '\\')
     {
       std::string next;
@@ -321,7 +351,7 @@ std::string parameters_as_markdown()
       out << "\n## " << (section.empty() ? "Top level" : section) << "\n\n"
           << "| Entry | Default | Allowed | Unit | Meaning |\n|---|---|---|---|---|\n";
     }
-    std::string allowed = e.pattern->description(dealii::Patterns::PatternBase::Text);
+    std::string allowed = allowed_values(e);
     for (std::size_t p = 0; (p = allowed.find('|', p)) != std::string::npos; p += 2)
       allowed.insert(p, "\\");
     std::replace(allowed.begin(), allowed.end(), '\n', ' ');

@@ -14,7 +14,18 @@ namespace
 {
 using namespace ddfem::coupling;
 
-/// Runs a command and turns exceptions into one message and an exit status. An error on one rank alone ends all.
+/// Ends all ranks, of which perhaps only this one has failed.
+int abort_all(const std::string &message, const ExitStatus status)
+{
+  std::cerr << "ddfem: " << message << std::endl;
+  int size = 1;
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  if (size > 1)
+    MPI_Abort(MPI_COMM_WORLD, status);
+  return status;
+}
+
+/// Runs a command and turns exceptions into one message and an exit status.
 int guarded(const std::function<int()> &command)
 {
   int rank = 0;
@@ -34,18 +45,12 @@ int guarded(const std::function<int()> &command)
   }
   catch (const FileAccessError &e)
   {
-    std::cerr << "ddfem: " << e.what() << std::endl;
-    MPI_Abort(MPI_COMM_WORLD, exit_file);
+    return abort_all(e.what(), exit_file);
   }
   catch (const std::exception &e)
   {
-    std::cerr << "ddfem: " << e.what() << std::endl;
+    return abort_all(e.what(), exit_failure);
   }
-  int size = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &size);
-  if (size > 1)
-    MPI_Abort(MPI_COMM_WORLD, exit_failure);
-  return exit_failure;
 }
 
 struct Options

@@ -36,6 +36,11 @@ std::shared_ptr<const Patterns::PatternBase> words()
 {
   return std::make_shared<Patterns::Anything>();
 }
+/// Miller indices.
+std::shared_ptr<const Patterns::PatternBase> miller_indices()
+{
+  return std::make_shared<Patterns::List>(Patterns::Integer(-100, 100), 3, 3, " ");
+}
 /// @p n numbers separated by blanks.
 std::shared_ptr<const Patterns::PatternBase> vector_of(const unsigned n)
 {
@@ -64,9 +69,9 @@ void add_material(std::vector<ParameterEntry> &t)
 void add_crystal(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Crystal";
-  t.push_back({s, "Direction along x", "1 0 0", vector_of(3), "",
+  t.push_back({s, "Direction along x", "1 0 0", miller_indices(), "",
                "Miller indices of the crystal direction along the sample axis x; orthogonal to that along z."});
-  t.push_back({s, "Direction along z", "0 0 1", vector_of(3), "",
+  t.push_back({s, "Direction along z", "0 0 1", miller_indices(), "",
                "Miller indices of the crystal direction along the sample axis z."});
 }
 

@@ -33,8 +33,8 @@ class InputDeck
 public:
   /// Defaults only.
   InputDeck();
-  /// Reads @p file. Throws FileAccessError if it cannot be opened, InputError for an unknown section or entry (with a
-  /// suggestion) or a value out of range.
+  /// Reads @p file. Throws InputError if it cannot be opened, for an unknown section or entry (with a suggestion), and for a
+  /// value out of range.
   void read(const std::string &file);
   /// "Section/Entry=value" from the command line.
   void set_from_command_line(const std::string &assignment);
@@ -65,7 +65,7 @@ private:
   void read_json(const std::string &file);
 
   std::map<std::string, std::string> values;
-  std::map<std::string, std::string> origin; ///< "file:line" or "command line", by path
+  std::map<std::string, std::string> origin; ///< "file:line" or "--set", by path
   std::string input_directory = ".";
 };
 

@@ -3,6 +3,7 @@
 #include "coupling/input_error.h"
 #include "dd/common/units.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -120,7 +121,10 @@ void write_network_vtu(const std::string &path, const Network &network)
 }
 
 RunOutput::RunOutput(std::string directory, const bool write)
-  : path(std::move(directory)), active(write), terminal(write && isatty(STDOUT_FILENO) != 0)
+  : path(std::move(directory))
+  , active(write)
+  // mpirun gives its processes a terminal even when its own output goes to a file.
+  , terminal(write && isatty(STDOUT_FILENO) != 0 && std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr)
 {
   if (!active)
     return;

@@ -49,7 +49,7 @@ public:
   void log(const std::string &line);
   /// A line that overwrites itself on a terminal; nothing otherwise.
   void status(const std::string &line);
-  /// dislocations_NNNNNN.vtu, and the collection up to now.
+  /// dislocations_NNNNNNN.vtu, and the collection up to now.
   void add_network_frame(unsigned step, double time, const Network &network);
   /// Adds a file written by the FEM to grain.pvd.
   void add_grain_frame(double time, const std::string &file);

@@ -92,14 +92,14 @@ LineSystem Simulation::closed_line_system()
   return lines;
 }
 
-ForceEnvironment Simulation::environment(const bool with_correction)
+ForceEnvironment Simulation::environment()
 {
   ForceEnvironment e;
   e.applied    = applied_stress();
   e.shape      = finite_grain ? &finite_grain->shape() : nullptr;
   e.cell       = images ? &parameters.cell : nullptr;
   e.images     = images.get();
-  e.correction = with_correction ? &correction : nullptr;
+  e.correction = &correction;
   return e;
 }
 
@@ -154,7 +154,7 @@ IntegratorStep Simulation::move_lines()
 {
   const Timing::Scope scope(timing, "forces and motion");
   const ForceSettings settings = parameters.force_settings();
-  const ForceEnvironment e     = environment(true);
+  const ForceEnvironment e     = environment();
   const auto velocity          = [&](const Network &n) {
     return glide_velocities(n, compute_nodal_forces(n, settings, e, communicator).total, parameters.mobility, e.shape);
   };
@@ -187,9 +187,11 @@ void Simulation::change_topology(TopologyContext &context)
     move_nodes(context, 1.0 / parts);
   }
   const SplittingModel model{parameters.medium, parameters.core_cutoff_radius, parameters.mobility};
-  // The correction is not known on the changed network; the line tension of the arms decides.
+  // The network has changed since the last solve, but its correction field has not: it is read at the new points.
   split_nodes(context, model, [&](const Network &n) {
-    return compute_nodal_forces(n, parameters.force_settings(), environment(false), communicator);
+    if (finite_grain)
+      correction = finite_grain->correction_stress(segment_points(n));
+    return compute_nodal_forces(n, parameters.force_settings(), environment(), communicator);
   });
   remesh(context);
   if (dislocations.node_capacity() > 2 * dislocations.n_nodes() + 64)
@@ -239,11 +241,6 @@ RunEnd Simulation::run(RunOutput &output)
   report(output, step, false);
   while (!must_stop(step))
   {
-    if (interrupted_anywhere(communicator))
-    {
-      report(output, step, true);
-      return RunEnd::interrupted;
-    }
     step                    = move_lines();
     TopologyContext context = topology_context(step.displacement);
     change_topology(context);
@@ -252,14 +249,17 @@ RunEnd Simulation::run(RunOutput &output)
     ++step_number;
     check_consistency();
     update_correction();
-    report(output, step, must_stop(step));
+    const bool interrupted = interrupted_anywhere(communicator);
+    report(output, step, interrupted || must_stop(step));
+    if (interrupted)
+      return RunEnd::interrupted;
   }
   return RunEnd::finished;
 }
 
 NodalForces Simulation::forces()
 {
-  return compute_nodal_forces(dislocations, parameters.force_settings(), environment(true), communicator, true);
+  return compute_nodal_forces(dislocations, parameters.force_settings(), environment(), communicator, true);
 }
 
 std::vector<SymTensor> Simulation::infinite_stress(const std::vector<Vec3> &points)

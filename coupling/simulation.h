@@ -48,6 +48,8 @@ public:
   const Network &network() const { return dislocations; }
   const FiniteGrain *grain() const { return finite_grain.get(); }
   const SymTensor &plastic_strain() const { return total_plastic_strain; }
+  double current_time() const { return time; } ///< ns
+  double nominal_strain() const;               ///< of the loading, along its axis
   /// Stress that acts on the dislocations besides their own fields in periodic and infinite mode, MPa.
   SymTensor applied_stress() const;
 
@@ -55,13 +57,12 @@ private:
   LineSystem line_system();
   /// The sources of the boundary-value problem: with open lines closed by their initial position.
   LineSystem closed_line_system();
-  ForceEnvironment environment(bool with_correction);
+  ForceEnvironment environment();
   TopologyContext topology_context(std::vector<Vec3> displacement);
   void update_correction();
   IntegratorStep move_lines();
   void change_topology(TopologyContext &context);
   void book();
-  double nominal_strain() const;
   double axial_plastic_strain() const;
   double reference_volume() const;
   double time_left() const;

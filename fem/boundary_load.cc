@@ -12,14 +12,14 @@ namespace ddfem::fem
 {
 namespace
 {
-/// A piece is halved when it would need more Gauss points than this in a direction. Fewer points on smaller pieces cost more
-/// near a line, more points on larger ones cost more where only a corner of the piece is near it.
+/// A piece is halved when it would need more Gauss points than this in a direction. Fewer points on smaller pieces cost
+/// more near a line, more points on larger ones cost more where only a corner of the piece is near it.
 constexpr unsigned most_points = 12;
 /// Halvings in a direction: a millionth of a face is far below any core radius.
 constexpr unsigned deepest = 20;
 
 /// Gauss points and weights on the unit interval for 1 ... most_points points.
-const std::vector<dealii::QGauss<1>>& gauss_rules()
+const std::vector<dealii::QGauss<1>> &gauss_rules()
 {
   static const std::vector<dealii::QGauss<1>> rules = []
   {
@@ -34,12 +34,11 @@ const std::vector<dealii::QGauss<1>>& gauss_rules()
 }
 } // namespace
 
-BoundaryLoad::BoundaryLoad(const NodalGrid& nodal_grid, const dealii::Point<3>& moment_centre, double relative_tolerance)
-  : grid(nodal_grid)
-  , centre(moment_centre)
-  , tolerance(relative_tolerance)
+BoundaryLoad::BoundaryLoad(const NodalGrid &nodal_grid, const dealii::Point<3> &moment_centre,
+                           double relative_tolerance)
+    : grid(nodal_grid), centre(moment_centre), tolerance(relative_tolerance)
 {
-  for (const auto& face : grid.faces)
+  for (const auto &face : grid.faces)
   {
     nodes_of_face.emplace_back();
     for (const unsigned a : face_nodes(grid.degree, face.number))
@@ -59,7 +58,7 @@ BoundaryLoad::Sample BoundaryLoad::sample(unsigned face, double s, double t) con
   {
     for (unsigned i = 0; i <= grid.degree; ++i, ++a)
     {
-      const auto& node = grid.positions[nodes_of_face[face][a]];
+      const auto &node = grid.positions[nodes_of_face[face][a]];
       result.values[a] = in_s.value[i] * in_t.value[j];
       result.position += result.values[a] * node;
       along_s += in_s.derivative[i] * in_t.value[j] * node;
@@ -71,14 +70,15 @@ BoundaryLoad::Sample BoundaryLoad::sample(unsigned face, double s, double t) con
   return result;
 }
 
-void BoundaryLoad::measure(Piece& piece) const
+void BoundaryLoad::measure(Piece &piece) const
 {
   std::array<std::array<dealii::Point<3>, 3>, 3> x;
   for (unsigned j = 0; j < 3; ++j)
   {
     for (unsigned i = 0; i < 3; ++i)
     {
-      x[j][i] = sample(piece.face, piece.low[0] + 0.5 * i * piece.size[0], piece.low[1] + 0.5 * j * piece.size[1]).position;
+      x[j][i] =
+          sample(piece.face, piece.low[0] + 0.5 * i * piece.size[0], piece.low[1] + 0.5 * j * piece.size[1]).position;
     }
   }
   piece.centre = x[1][1];
@@ -109,7 +109,7 @@ unsigned BoundaryLoad::required_order(double length, double distance) const
   return n > most_points ? most_points + 1 : std::max(least, static_cast<unsigned>(n));
 }
 
-bool BoundaryLoad::halve(Piece piece, double distance, std::vector<Piece>& next, std::vector<Piece>& done) const
+bool BoundaryLoad::halve(Piece piece, double distance, std::vector<Piece> &next, std::vector<Piece> &done) const
 {
   std::array<unsigned, 2> parts = {1, 1};
   bool resolved = true;
@@ -142,7 +142,7 @@ bool BoundaryLoad::halve(Piece piece, double distance, std::vector<Piece>& next,
   return true;
 }
 
-std::vector<BoundaryLoad::Piece> BoundaryLoad::divide(const TractionField& field, std::uint64_t& n_unresolved) const
+std::vector<BoundaryLoad::Piece> BoundaryLoad::divide(const TractionField &field, std::uint64_t &n_unresolved) const
 {
   std::vector<Piece> active, next, done;
   for (unsigned face = 0; face < grid.faces.size(); ++face)
@@ -155,7 +155,7 @@ std::vector<BoundaryLoad::Piece> BoundaryLoad::divide(const TractionField& field
   {
     centres.clear();
     radii.clear();
-    for (Piece& piece : active)
+    for (Piece &piece : active)
     {
       measure(piece);
       centres.push_back(piece.centre);
@@ -173,10 +173,10 @@ std::vector<BoundaryLoad::Piece> BoundaryLoad::divide(const TractionField& field
   return done;
 }
 
-void BoundaryLoad::append_points(const Piece& piece, std::vector<Sample>& samples) const
+void BoundaryLoad::append_points(const Piece &piece, std::vector<Sample> &samples) const
 {
-  const auto& rule_s = gauss_rules()[piece.order[0] - 1];
-  const auto& rule_t = gauss_rules()[piece.order[1] - 1];
+  const auto &rule_s = gauss_rules()[piece.order[0] - 1];
+  const auto &rule_t = gauss_rules()[piece.order[1] - 1];
   for (unsigned j = 0; j < rule_t.size(); ++j)
   {
     for (unsigned i = 0; i < rule_s.size(); ++i)
@@ -188,20 +188,20 @@ void BoundaryLoad::append_points(const Piece& piece, std::vector<Sample>& sample
   }
 }
 
-TractionSummary BoundaryLoad::add_field(const TractionField& field, NodalVector& load) const
+TractionSummary BoundaryLoad::add_field(const TractionField &field, NodalVector &load) const
 {
   TractionSummary summary;
   const std::vector<Piece> pieces = divide(field, summary.n_unresolved);
   std::vector<Sample> samples;
   std::vector<unsigned> faces;
-  for (const Piece& piece : pieces)
+  for (const Piece &piece : pieces)
   {
     append_points(piece, samples);
     faces.resize(samples.size(), piece.face);
   }
   std::vector<dealii::Point<3>> points;
   points.reserve(samples.size());
-  for (const Sample& s : samples)
+  for (const Sample &s : samples)
   {
     points.push_back(s.position);
   }
@@ -216,7 +216,7 @@ TractionSummary BoundaryLoad::add_field(const TractionField& field, NodalVector&
     summary.moment += cross_product_3d(arm, force);
     summary.absolute_force += force.norm();
     summary.absolute_moment += arm.norm() * force.norm();
-    const auto& nodes = nodes_of_face[faces[i]];
+    const auto &nodes = nodes_of_face[faces[i]];
     for (unsigned a = 0; a < nodes.size(); ++a)
     {
       for (unsigned c = 0; c < 3; ++c)
@@ -232,7 +232,7 @@ TractionSummary BoundaryLoad::add_field(const TractionField& field, NodalVector&
   return summary;
 }
 
-void BoundaryLoad::reduce(TractionSummary& summary) const
+void BoundaryLoad::reduce(TractionSummary &summary) const
 {
   std::array<double, 8> sums;
   for (unsigned d = 0; d < 3; ++d)
@@ -256,8 +256,8 @@ void BoundaryLoad::reduce(TractionSummary& summary) const
   summary.n_unresolved = counts[1];
 }
 
-void BoundaryLoad::add_uniform(dealii::types::boundary_id boundary, const dealii::Tensor<1, 3>& traction,
-                               NodalVector& load) const
+void BoundaryLoad::add_uniform(dealii::types::boundary_id boundary, const dealii::Tensor<1, 3> &traction,
+                               NodalVector &load) const
 {
   NodalVector integral(grid.partitioner);
   std::vector<Sample> samples;
@@ -269,11 +269,12 @@ void BoundaryLoad::add_uniform(dealii::types::boundary_id boundary, const dealii
     }
     samples.clear();
     append_points({face, {0., 0.}, {1., 1.}, {0, 0}, {most_points, most_points}, {}, 0., {}}, samples);
-    for (const Sample& s : samples)
+    for (const Sample &s : samples)
     {
       for (unsigned k = 0; k < 3 * nodes_of_face[face].size(); ++k)
       {
-        integral.local_element(3 * nodes_of_face[face][k / 3] + k % 3) += s.values[k / 3] * s.area.norm() * traction[k % 3];
+        integral.local_element(3 * nodes_of_face[face][k / 3] + k % 3) +=
+            s.values[k / 3] * s.area.norm() * traction[k % 3];
       }
     }
   }

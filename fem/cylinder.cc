@@ -31,7 +31,8 @@ dealii::Point<2> core_side(double t)
 dealii::Point<2> core_point(double s, double t)
 {
   const auto right = core_side(t), top = core_side(s), corner = core_side(1.);
-  // x: +-right[0] at s = +-1 and top[1] at t = +-1 are both met once their common part s * corner[0] is taken off; y likewise.
+  // x: +-right[0] at s = +-1 and top[1] at t = +-1 are both met once their common part s * corner[0] is taken off; y
+  // likewise.
   return {s * right[0] + top[1] - s * corner[0], t * top[0] + right[1] - t * corner[1]};
 }
 
@@ -88,7 +89,8 @@ Disc make_disc(unsigned n, unsigned m)
 }
 } // namespace
 
-void make_cylinder(dealii::Triangulation<3>& triangulation, double radius, double height, unsigned n_across, unsigned n_along)
+void make_cylinder(dealii::Triangulation<3> &triangulation, double radius, double height, unsigned n_across,
+                   unsigned n_along)
 {
   const unsigned m = std::max(1u, (n_across + 2) / 4);
   const unsigned n = std::max(1u, n_across > 2 * m ? n_across - 2 * m : 1u);
@@ -97,7 +99,7 @@ void make_cylinder(dealii::Triangulation<3>& triangulation, double radius, doubl
   std::vector<dealii::Point<3>> vertices;
   for (unsigned k = 0; k <= n_along; ++k)
   {
-    for (const auto& p : disc.points)
+    for (const auto &p : disc.points)
     {
       vertices.emplace_back(radius * p[0], radius * p[1], height * k / n_along);
     }
@@ -105,7 +107,7 @@ void make_cylinder(dealii::Triangulation<3>& triangulation, double radius, doubl
   std::vector<dealii::CellData<3>> cells;
   for (unsigned k = 0; k < n_along; ++k)
   {
-    for (const auto& quad : disc.quads)
+    for (const auto &quad : disc.quads)
     {
       dealii::CellData<3> cell(8);
       for (unsigned v = 0; v < 4; ++v)
@@ -117,7 +119,7 @@ void make_cylinder(dealii::Triangulation<3>& triangulation, double radius, doubl
     }
   }
   triangulation.create_triangulation(vertices, cells, dealii::SubCellData());
-  for (const auto& face : triangulation.active_face_iterators())
+  for (const auto &face : triangulation.active_face_iterators())
   {
     if (face->at_boundary())
     {

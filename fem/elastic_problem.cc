@@ -30,23 +30,17 @@ double seconds_since(Clock::time_point start)
 class ElasticProblem::Implementation
 {
 public:
-  Implementation(const Triangulation& triangulation, const Parameters& given, const Moduli& moduli,
-                 const std::vector<DisplacementCondition>& displacement_conditions)
-    : parameters(given)
-    , conditions(displacement_conditions)
-    , grid(triangulation, given.degree)
-    , areas(boundary_areas(triangulation, given.degree))
-    , volume_centre(volume_and_centre(grid))
-    , condition_of(assign_conditions(grid, conditions))
-    , system(grid, flags_of(condition_of), lame_lambda(moduli), moduli.mu, volume_centre.second,
-             std::cbrt(volume_centre.first))
-    , boundary_load(grid, volume_centre.second, given.traction_tolerance)
-    , recovery(grid, lame_lambda(moduli), moduli.mu, given.recovery == Recovery::patches)
-    , locator(grid, given.outside_tolerance)
-    , field_load(system.make_vector())
-    , uniform_load(system.make_vector())
-    , displacement(system.make_vector())
-    , starts(system, given.extrapolate ? 2 : 1)
+  Implementation(const Triangulation &triangulation, const Parameters &given, const Moduli &moduli,
+                 const std::vector<DisplacementCondition> &displacement_conditions)
+      : parameters(given), conditions(displacement_conditions), grid(triangulation, given.degree),
+        areas(boundary_areas(triangulation, given.degree)), volume_centre(volume_and_centre(grid)),
+        condition_of(assign_conditions(grid, conditions)),
+        system(grid, flags_of(condition_of), lame_lambda(moduli), moduli.mu, volume_centre.second,
+               std::cbrt(volume_centre.first)),
+        boundary_load(grid, volume_centre.second, given.traction_tolerance),
+        recovery(grid, lame_lambda(moduli), moduli.mu, given.recovery == Recovery::patches),
+        locator(grid, given.outside_tolerance), field_load(system.make_vector()), uniform_load(system.make_vector()),
+        displacement(system.make_vector()), starts(system, given.extrapolate ? 2 : 1)
   {
     displacement.update_ghost_values();
     for (unsigned node = 0; node < grid.n_owned_nodes; ++node)
@@ -56,21 +50,21 @@ public:
         boundary_nodes.push_back(node);
         points.push_back(grid.positions[node]);
         ids.push_back(grid.node_boundaries[node]);
-        const auto& k = condition_of[node];
+        const auto &k = condition_of[node];
         prescribed.push_back({k[0] >= 0, k[1] >= 0, k[2] >= 0});
       }
     }
   }
 
-  SolveInfo solve(const std::vector<dealii::Tensor<1, 3>>& values);
+  SolveInfo solve(const std::vector<dealii::Tensor<1, 3>> &values);
   dealii::Tensor<1, 3> reaction(dealii::types::boundary_id boundary) const;
-  const std::vector<double>& stress() const;
-  void set_displacement(const NodalVector& owned_values);
-  NodalVector from_owned(const std::vector<double>& values) const;
-  std::vector<double> owned(const NodalVector& vector) const { return {vector.begin(), vector.end()}; }
+  const std::vector<double> &stress() const;
+  void set_displacement(const NodalVector &owned_values);
+  NodalVector from_owned(const std::vector<double> &values) const;
+  std::vector<double> owned(const NodalVector &vector) const { return {vector.begin(), vector.end()}; }
 
   /// A vector with the given values at boundary_points() and zero elsewhere; only prescribed components, if asked for.
-  NodalVector from_boundary(const std::vector<dealii::Tensor<1, 3>>& values, bool only_prescribed) const;
+  NodalVector from_boundary(const std::vector<dealii::Tensor<1, 3>> &values, bool only_prescribed) const;
 
   const Parameters parameters;
   const std::vector<DisplacementCondition> conditions;
@@ -83,7 +77,7 @@ public:
   const StressRecovery recovery;
   mutable PointLocator locator;
   NodalVector field_load, uniform_load;
-  NodalVector displacement; // with ghost values
+  NodalVector displacement;                 // with ghost values
   mutable std::vector<double> nodal_stress; // empty until asked for
   std::vector<unsigned> boundary_nodes;
   std::vector<dealii::Point<3>> points;
@@ -93,7 +87,7 @@ public:
   StartVectors starts;
 };
 
-NodalVector ElasticProblem::Implementation::from_boundary(const std::vector<dealii::Tensor<1, 3>>& values,
+NodalVector ElasticProblem::Implementation::from_boundary(const std::vector<dealii::Tensor<1, 3>> &values,
                                                           bool only_prescribed) const
 {
   require(values.size() == points.size(), "displacements are given at ", values.size(), " points instead of the ",
@@ -109,16 +103,16 @@ NodalVector ElasticProblem::Implementation::from_boundary(const std::vector<deal
   return vector;
 }
 
-NodalVector ElasticProblem::Implementation::from_owned(const std::vector<double>& values) const
+NodalVector ElasticProblem::Implementation::from_owned(const std::vector<double> &values) const
 {
   NodalVector vector = system.make_vector();
-  require(values.size() == vector.locally_owned_size(), "a solution with ", values.size(), " unknowns is given instead of ",
-          vector.locally_owned_size());
+  require(values.size() == vector.locally_owned_size(), "a solution with ", values.size(),
+          " unknowns is given instead of ", vector.locally_owned_size());
   std::copy(values.begin(), values.end(), vector.begin());
   return vector;
 }
 
-void ElasticProblem::Implementation::set_displacement(const NodalVector& owned_values)
+void ElasticProblem::Implementation::set_displacement(const NodalVector &owned_values)
 {
   displacement.zero_out_ghost_values();
   displacement.copy_locally_owned_data_from(owned_values);
@@ -126,7 +120,7 @@ void ElasticProblem::Implementation::set_displacement(const NodalVector& owned_v
   nodal_stress.clear();
 }
 
-SolveInfo ElasticProblem::Implementation::solve(const std::vector<dealii::Tensor<1, 3>>& values)
+SolveInfo ElasticProblem::Implementation::solve(const std::vector<dealii::Tensor<1, 3>> &values)
 {
   const auto start_time = Clock::now();
   NodalVector total = from_boundary(values, true);
@@ -136,7 +130,8 @@ SolveInfo ElasticProblem::Implementation::solve(const std::vector<dealii::Tensor
   const double given_norm = load.l2_norm();
   if (!std::isfinite(given_norm))
   {
-    throw std::runtime_error("the load of the elastic problem is not finite: check tractions and prescribed displacements");
+    throw std::runtime_error(
+        "the load of the elastic problem is not finite: check tractions and prescribed displacements");
   }
   const double removed = system.remove_resultant(load);
   const double norm = load.l2_norm();
@@ -181,7 +176,7 @@ dealii::Tensor<1, 3> ElasticProblem::Implementation::reaction(dealii::types::bou
   return dealii::Tensor<1, 3>({sum[0], sum[1], sum[2]});
 }
 
-const std::vector<double>& ElasticProblem::Implementation::stress() const
+const std::vector<double> &ElasticProblem::Implementation::stress() const
 {
   int empty = nodal_stress.empty() ? 1 : 0;
   // A rank without cells always has none: all must agree to take part.
@@ -193,13 +188,13 @@ const std::vector<double>& ElasticProblem::Implementation::stress() const
   return nodal_stress;
 }
 
-ElasticProblem::ElasticProblem(const Triangulation& triangulation, const Parameters& parameters, const Moduli& moduli,
-                               const std::vector<DisplacementCondition>& conditions)
+ElasticProblem::ElasticProblem(const Triangulation &triangulation, const Parameters &parameters, const Moduli &moduli,
+                               const std::vector<DisplacementCondition> &conditions)
 {
   const auto start = Clock::now();
   check(parameters, moduli);
   const auto areas = boundary_areas(triangulation, 1);
-  for (const auto& condition : conditions)
+  for (const auto &condition : conditions)
   {
     require(areas.count(condition.boundary) > 0, "a displacement is prescribed on boundary ", condition.boundary,
             ", which the mesh does not have");
@@ -210,28 +205,28 @@ ElasticProblem::ElasticProblem(const Triangulation& triangulation, const Paramet
 
 ElasticProblem::~ElasticProblem() = default;
 
-const std::vector<dealii::Point<3>>& ElasticProblem::boundary_points() const
+const std::vector<dealii::Point<3>> &ElasticProblem::boundary_points() const
 {
   return implementation->points;
 }
 
-const std::vector<std::array<bool, 3>>& ElasticProblem::prescribed_components() const
+const std::vector<std::array<bool, 3>> &ElasticProblem::prescribed_components() const
 {
   return implementation->prescribed;
 }
 
-const std::vector<std::vector<dealii::types::boundary_id>>& ElasticProblem::boundary_ids() const
+const std::vector<std::vector<dealii::types::boundary_id>> &ElasticProblem::boundary_ids() const
 {
   return implementation->ids;
 }
 
-TractionSummary ElasticProblem::set_tractions(const TractionField& field)
+TractionSummary ElasticProblem::set_tractions(const TractionField &field)
 {
   implementation->field_load = 0.;
   return implementation->boundary_load.add_field(field, implementation->field_load);
 }
 
-void ElasticProblem::add_uniform_traction(dealii::types::boundary_id boundary, const dealii::Tensor<1, 3>& traction)
+void ElasticProblem::add_uniform_traction(dealii::types::boundary_id boundary, const dealii::Tensor<1, 3> &traction)
 {
   require(implementation->areas.count(boundary) > 0, "a traction is given on boundary ", boundary,
           ", which the mesh does not have");
@@ -249,7 +244,7 @@ void ElasticProblem::clear_tractions()
   implementation->uniform_load = 0.;
 }
 
-SolveInfo ElasticProblem::solve(const std::vector<dealii::Tensor<1, 3>>& prescribed)
+SolveInfo ElasticProblem::solve(const std::vector<dealii::Tensor<1, 3>> &prescribed)
 {
   return implementation->solve(prescribed);
 }
@@ -259,9 +254,9 @@ std::vector<dealii::Tensor<1, 3>> ElasticProblem::boundary_displacements() const
   std::vector<dealii::Tensor<1, 3>> result;
   for (const unsigned node : implementation->boundary_nodes)
   {
-    const auto& u = implementation->displacement;
-    result.push_back(
-      dealii::Tensor<1, 3>({u.local_element(3 * node), u.local_element(3 * node + 1), u.local_element(3 * node + 2)}));
+    const auto &u = implementation->displacement;
+    result.push_back(dealii::Tensor<1, 3>(
+        {u.local_element(3 * node), u.local_element(3 * node + 1), u.local_element(3 * node + 2)}));
   }
   return result;
 }
@@ -271,13 +266,13 @@ dealii::Tensor<1, 3> ElasticProblem::reaction(dealii::types::boundary_id boundar
   return implementation->reaction(boundary);
 }
 
-std::vector<dealii::SymmetricTensor<2, 3>> ElasticProblem::stress_at(const std::vector<dealii::Point<3>>& points) const
+std::vector<dealii::SymmetricTensor<2, 3>> ElasticProblem::stress_at(const std::vector<dealii::Point<3>> &points) const
 {
   const auto values = implementation->locator.evaluate(points, 6, implementation->stress());
   std::vector<dealii::SymmetricTensor<2, 3>> result(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    const double* const s = &values[6 * i];
+    const double *const s = &values[6 * i];
     result[i][0][0] = s[0];
     result[i][1][1] = s[1];
     result[i][2][2] = s[2];
@@ -288,9 +283,9 @@ std::vector<dealii::SymmetricTensor<2, 3>> ElasticProblem::stress_at(const std::
   return result;
 }
 
-std::vector<dealii::Tensor<1, 3>> ElasticProblem::displacement_at(const std::vector<dealii::Point<3>>& points) const
+std::vector<dealii::Tensor<1, 3>> ElasticProblem::displacement_at(const std::vector<dealii::Point<3>> &points) const
 {
-  const auto& u = implementation->displacement;
+  const auto &u = implementation->displacement;
   std::vector<double> nodal(3 * implementation->grid.positions.size());
   for (unsigned i = 0; i < nodal.size(); ++i)
   {
@@ -310,7 +305,7 @@ std::vector<double> ElasticProblem::solution() const
   return implementation->owned(implementation->displacement);
 }
 
-void ElasticProblem::set_solution(const std::vector<double>& values)
+void ElasticProblem::set_solution(const std::vector<double> &values)
 {
   implementation->set_displacement(implementation->from_owned(values));
 }
@@ -318,14 +313,14 @@ void ElasticProblem::set_solution(const std::vector<double>& values)
 std::vector<std::vector<double>> ElasticProblem::start_vectors() const
 {
   std::vector<std::vector<double>> values;
-  for (const NodalVector* const vector : implementation->starts.vectors())
+  for (const NodalVector *const vector : implementation->starts.vectors())
   {
     values.push_back(implementation->owned(*vector));
   }
   return values;
 }
 
-void ElasticProblem::set_start_vectors(const std::vector<std::vector<double>>& vectors)
+void ElasticProblem::set_start_vectors(const std::vector<std::vector<double>> &vectors)
 {
   implementation->starts.clear();
   for (auto v = vectors.rbegin(); v != vectors.rend(); ++v)
@@ -334,8 +329,8 @@ void ElasticProblem::set_start_vectors(const std::vector<std::vector<double>>& v
   }
 }
 
-std::string ElasticProblem::write_surface(const std::string& directory, const std::string& base_name,
-                                          const std::vector<dealii::Tensor<1, 3>>& extra_displacement) const
+std::string ElasticProblem::write_surface(const std::string &directory, const std::string &base_name,
+                                          const std::vector<dealii::Tensor<1, 3>> &extra_displacement) const
 {
   NodalVector total = implementation->from_boundary(extra_displacement, false);
   total += implementation->displacement;

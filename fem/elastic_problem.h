@@ -37,17 +37,19 @@ struct SolveInfo
   double initial_residual = 0.; ///< norm of the residual of the starting vector over the norm of the load
   double final_residual = 0.;   ///< the same at the end
   double seconds = 0.;          ///< wall time
-  double unbalanced_load = 0.;  ///< norm of the resultant along free rigid-body modes that had to be removed from the load,
-                                ///< relative to the load; rounding (and traction_tolerance) for a sound all-traction problem
+  /// Norm of the resultant along free rigid-body modes that had to be removed from the load, over the load: rounding
+  /// and traction_tolerance for a sound all-traction problem.
+  double unbalanced_load = 0.;
 };
 
-/// The correction problem of a grain: div sigma^ = 0, sigma^ n = -sigma~ n on the boundary, u^ prescribed where displacement
-/// conditions say so (van der Giessen & Needleman, MSMSE 3 (1995) 689). Isotropic linear elasticity with Q1 or Q2 hexahedra
-/// and a mapping of the same degree. The matrix and its algebraic multigrid preconditioner are set up once.
+/// The correction problem of a grain: div sigma^ = 0, sigma^ n = -sigma~ n on the boundary, u^ prescribed where
+/// displacement conditions say so (van der Giessen & Needleman, MSMSE 3 (1995) 689). Isotropic linear elasticity with
+/// Q1 or Q2 hexahedra and a mapping of the same degree. The matrix and its algebraic multigrid preconditioner are set
+/// up once.
 ///
-/// Rigid-body motions that the displacement conditions leave free are found automatically. They are removed by projection:
-/// the load is made self-equilibrated by the uniform inertia force it would cause, and the displacement is orthogonal (in
-/// the volume integral) to them. Nothing depends on where the grain is.
+/// Rigid-body motions that the displacement conditions leave free are found automatically. They are removed by
+/// projection: the load is made self-equilibrated by the uniform inertia force it would cause, and the displacement is
+/// orthogonal (in the volume integral) to them. Nothing depends on where the grain is.
 ///
 /// Units nm, MPa, force MPa nm^2; sample frame. All members are collective unless they say otherwise.
 class ElasticProblem
@@ -57,7 +59,7 @@ public:
   enum class Recovery
   {
     patches, ///< least-squares fits around vertices (Zienkiewicz & Zhu, IJNME 33 (1992) 1331)
-    averages ///< extrapolation from the Gauss points, averaged at nodes; steadier where the mesh does not resolve the field
+    averages ///< extrapolation from Gauss points, averaged at nodes; steadier where the mesh does not resolve the field
   };
 
   struct Parameters
@@ -69,87 +71,91 @@ public:
     unsigned max_iterations = 1000;
     /// Aimed-at relative error of the integrals of the tractions.
     double traction_tolerance = 1e-6;
-    /// Start from that combination of the last two solutions which is best in the energy norm (Fischer, CMAME 163 (1998) 193)
-    /// instead of the last one as it is.
+    /// Start from that combination of the last two solutions which is best in the energy norm (Fischer, CMAME 163
+    /// (1998) 193) instead of the last one as it is.
     bool extrapolate = true;
     Recovery recovery = Recovery::patches;
-    /// Points that lie farther outside the mesh than this fraction of a cell are errors in stress_at(), displacement_at().
+    /// Points that lie farther outside the mesh than this fraction of a cell are errors in stress_at(),
+    /// displacement_at().
     double outside_tolerance = 0.02;
   };
 
-  /// Sets everything up. `triangulation` must outlive the object, be all hexahedra and have no hanging nodes.
-  /// Throws std::invalid_argument for parameters or moduli without sense and for conditions on boundaries that the mesh does
+  /// Sets everything up. `triangulation` must outlive the object, be all hexahedra and have no hanging nodes. Throws
+  /// std::invalid_argument for parameters or moduli without sense and for conditions on boundaries that the mesh does
   /// not have.
-  ElasticProblem(const Triangulation& triangulation, const Parameters& parameters, const Moduli& moduli,
-                 const std::vector<DisplacementCondition>& conditions);
+  ElasticProblem(const Triangulation &triangulation, const Parameters &parameters, const Moduli &moduli,
+                 const std::vector<DisplacementCondition> &conditions);
   ~ElasticProblem();
-  ElasticProblem(const ElasticProblem&) = delete;
-  ElasticProblem& operator=(const ElasticProblem&) = delete;
+  ElasticProblem(const ElasticProblem &) = delete;
+  ElasticProblem &operator=(const ElasticProblem &) = delete;
 
   /// Locally owned nodes on the boundary (nm), each once, in a fixed order. Local.
-  const std::vector<dealii::Point<3>>& boundary_points() const;
+  const std::vector<dealii::Point<3>> &boundary_points() const;
   /// For each of boundary_points(): which components of its displacement are prescribed. Local.
-  const std::vector<std::array<bool, 3>>& prescribed_components() const;
+  const std::vector<std::array<bool, 3>> &prescribed_components() const;
   /// For each of boundary_points(): the boundary ids it belongs to, ascending. Local.
-  const std::vector<std::vector<dealii::types::boundary_id>>& boundary_ids() const;
+  const std::vector<std::vector<dealii::types::boundary_id>> &boundary_ids() const;
 
-  /// Replaces the load of the field: f = -int N . (sigma~ n) dS over the whole boundary, by adaptive quadrature. Uniform
-  /// tractions are kept.
-  TractionSummary set_tractions(const TractionField& field);
-  /// Adds a uniform traction (MPa) on a boundary: f += int N . t dS. Throws std::invalid_argument for an unknown boundary.
-  void add_uniform_traction(dealii::types::boundary_id boundary, const dealii::Tensor<1, 3>& traction);
+  /// Replaces the load of the field: f = -int N . (sigma~ n) dS over the whole boundary, by adaptive quadrature.
+  /// Uniform tractions are kept.
+  TractionSummary set_tractions(const TractionField &field);
+  /// Adds a uniform traction (MPa) on a boundary: f += int N . t dS. Throws std::invalid_argument for an unknown
+  /// boundary.
+  void add_uniform_traction(dealii::types::boundary_id boundary, const dealii::Tensor<1, 3> &traction);
   /// Removes the uniform tractions.
   void clear_uniform_tractions();
   /// Removes all loads.
   void clear_tractions();
 
-  /// Solves for the correction. `prescribed`: displacement (nm) for each of boundary_points(), of which only the prescribed
-  /// components are read. Starts from the previous solution. A load without any force gives exactly zero at once.
-  /// Throws std::invalid_argument for a wrong size, std::runtime_error without convergence or with a load that is not finite.
-  SolveInfo solve(const std::vector<dealii::Tensor<1, 3>>& prescribed);
+  /// Solves for the correction. `prescribed`: displacement (nm) for each of boundary_points(), of which only the
+  /// prescribed components are read. Starts from the previous solution. A load without any force gives exactly zero at
+  /// once. Throws std::invalid_argument for a wrong size, std::runtime_error without convergence or with a load that is
+  /// not finite.
+  SolveInfo solve(const std::vector<dealii::Tensor<1, 3>> &prescribed);
 
   /// Correction u^ (nm) at boundary_points(). Local.
   std::vector<dealii::Tensor<1, 3>> boundary_displacements() const;
 
-  /// Force (MPa nm^2) that the displacement conditions of a boundary exert on the grain, total field (sigma^ + sigma~), weak
-  /// form: sum of K u^ - f over the prescribed unknowns of that boundary. Components that are not prescribed are zero. An
-  /// unknown on an edge of two boundaries that both prescribe it counts for the one that comes first in the conditions.
+  /// Force (MPa nm^2) that the displacement conditions of a boundary exert on the grain, total field (sigma^ + sigma~),
+  /// weak form: sum of K u^ - f over the prescribed unknowns of that boundary. Components that are not prescribed are
+  /// zero. An unknown on an edge of two boundaries that both prescribe it counts for the one that comes first in the
+  /// conditions.
   dealii::Tensor<1, 3> reaction(dealii::types::boundary_id boundary) const;
 
-  /// Recovered stress sigma^ (MPa), continuous, at points (nm). Points must be the same on all ranks, and all ranks get the
-  /// same bits. Calls with the same index for about the same point are faster (it starts in the cell of the previous call).
-  /// Throws std::runtime_error for a point farther outside the mesh than Parameters::outside_tolerance.
-  std::vector<dealii::SymmetricTensor<2, 3>> stress_at(const std::vector<dealii::Point<3>>& points) const;
+  /// Recovered stress sigma^ (MPa), continuous, at points (nm). Points must be the same on all ranks, and all ranks get
+  /// the same bits. Calls with the same index for about the same point are faster (it starts in the cell of the
+  /// previous call). Throws std::runtime_error for a point farther outside the mesh than Parameters::outside_tolerance.
+  std::vector<dealii::SymmetricTensor<2, 3>> stress_at(const std::vector<dealii::Point<3>> &points) const;
   /// Displacement u^ (nm) at points; as stress_at().
-  std::vector<dealii::Tensor<1, 3>> displacement_at(const std::vector<dealii::Point<3>>& points) const;
+  std::vector<dealii::Tensor<1, 3>> displacement_at(const std::vector<dealii::Point<3>> &points) const;
 
   /// Locally owned unknowns of the last solution, for superposition. Local.
   std::vector<double> solution() const;
-  /// Replaces the solution, and with it displacements, reactions (with the loads as they are now) and stresses, but not what the
-  /// next solve starts from. Throws std::invalid_argument for a wrong size.
-  void set_solution(const std::vector<double>& values);
+  /// Replaces the solution, and with it displacements, reactions (with the loads as they are now) and stresses, but not
+  /// what the next solve starts from. Throws std::invalid_argument for a wrong size.
+  void set_solution(const std::vector<double> &values);
 
-  /// What the next solve starts from: locally owned unknowns of at most two vectors, the most recent first. With the same mesh
-  /// and number of ranks a restart that puts them back continues bit by bit. Local.
+  /// What the next solve starts from: locally owned unknowns of at most two vectors, the most recent first. With the
+  /// same mesh and number of ranks a restart that puts them back continues bit by bit. Local.
   std::vector<std::vector<double>> start_vectors() const;
   /// Throws std::invalid_argument for a wrong size.
-  void set_start_vectors(const std::vector<std::vector<double>>& vectors);
+  void set_start_vectors(const std::vector<std::vector<double>> &vectors);
 
   /// Writes the surface: `base_name`.pvtu in `directory` and a .vtu for each rank, in SI units: points (m), total
   /// displacement u = extra + u^ (m), correction displacement u^ (m), von Mises stress of sigma^ (Pa), boundary id.
-  /// `extra_displacement` (nm) is given at boundary_points(). Files are written under a temporary name and then renamed.
-  /// Returns the path of the .pvtu. Throws std::runtime_error for a file that cannot be written.
-  std::string write_surface(const std::string& directory, const std::string& base_name,
-                            const std::vector<dealii::Tensor<1, 3>>& extra_displacement) const;
+  /// `extra_displacement` (nm) is given at boundary_points(). Files are written under a temporary name and then
+  /// renamed. Returns the path of the .pvtu. Throws std::runtime_error for a file that cannot be written.
+  std::string write_surface(const std::string &directory, const std::string &base_name,
+                            const std::vector<dealii::Tensor<1, 3>> &extra_displacement) const;
 
   /// Sizes, the same on all ranks. Local.
   std::uint64_t n_dofs() const;
   std::uint64_t n_cells() const;
   unsigned n_free_rigid_modes() const;
-  double volume() const;                                             ///< nm^3
-  double boundary_area(dealii::types::boundary_id boundary) const;   ///< nm^2, zero for an unknown boundary
-  dealii::Point<3> centre() const;                                   ///< centre of volume, nm
-  double setup_seconds() const;                                      ///< wall time of the constructor
+  double volume() const;                                           ///< nm^3
+  double boundary_area(dealii::types::boundary_id boundary) const; ///< nm^2, zero for an unknown boundary
+  dealii::Point<3> centre() const;                                 ///< centre of volume, nm
+  double setup_seconds() const;                                    ///< wall time of the constructor
 
 private:
   class Implementation;

@@ -2,12 +2,11 @@
 
 #include "fem/element.h"
 
+#include <Epetra_MultiVector.h>
+#include <Teuchos_ParameterList.hpp>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/sparsity_tools.h>
-
-#include <Epetra_MultiVector.h>
-#include <Teuchos_ParameterList.hpp>
 
 #include <cmath>
 #include <sstream>
@@ -17,7 +16,7 @@ namespace ddfem::fem
 {
 namespace
 {
-std::vector<dealii::Point<3>> cell_positions(const NodalGrid& grid, unsigned cell)
+std::vector<dealii::Point<3>> cell_positions(const NodalGrid &grid, unsigned cell)
 {
   std::vector<dealii::Point<3>> positions;
   for (unsigned a = 0; a < grid.nodes_per_cell; ++a)
@@ -28,7 +27,7 @@ std::vector<dealii::Point<3>> cell_positions(const NodalGrid& grid, unsigned cel
 }
 
 /// Whether two cells differ by a translation only, so that they have the same matrix.
-bool same_shape(const std::vector<dealii::Point<3>>& a, const std::vector<dealii::Point<3>>& b)
+bool same_shape(const std::vector<dealii::Point<3>> &a, const std::vector<dealii::Point<3>> &b)
 {
   if (a.size() != b.size())
   {
@@ -46,14 +45,12 @@ bool same_shape(const std::vector<dealii::Point<3>>& a, const std::vector<dealii
 }
 } // namespace
 
-ElasticSystem::ElasticSystem(const NodalGrid& nodal_grid, const std::vector<std::array<bool, 3>>& prescribed_components,
-                             double lambda, double mu, const dealii::Point<3>& centre, double length)
-  : grid(nodal_grid)
-  , prescribed(prescribed_components)
-  , scratch(nodal_grid.partitioner)
+ElasticSystem::ElasticSystem(const NodalGrid &nodal_grid, const std::vector<std::array<bool, 3>> &prescribed_components,
+                             double lambda, double mu, const dealii::Point<3> &centre, double length)
+    : grid(nodal_grid), prescribed(prescribed_components), scratch(nodal_grid.partitioner)
 {
   int found = 0;
-  for (const auto& flags : prescribed)
+  for (const auto &flags : prescribed)
   {
     found |= static_cast<int>(flags[0] || flags[1] || flags[2]);
   }
@@ -67,7 +64,7 @@ ElasticSystem::ElasticSystem(const NodalGrid& nodal_grid, const std::vector<std:
 
 void ElasticSystem::make_sparsity()
 {
-  const auto& owned = grid.partitioner->locally_owned_range();
+  const auto &owned = grid.partitioner->locally_owned_range();
   dealii::IndexSet active = owned;
   active.add_indices(grid.partitioner->ghost_indices());
   dealii::DynamicSparsityPattern free(active.size(), active.size(), active), full(active.size(), active.size(), active);
@@ -98,7 +95,7 @@ void ElasticSystem::make_sparsity()
       free.add_entries(row, unknown.begin(), unknown.end());
     }
   }
-  const auto share = [&](dealii::DynamicSparsityPattern& pattern, dealii::TrilinosWrappers::SparseMatrix& target)
+  const auto share = [&](dealii::DynamicSparsityPattern &pattern, dealii::TrilinosWrappers::SparseMatrix &target)
   {
     dealii::SparsityTools::distribute_sparsity_pattern(pattern, owned, grid.communicator, active);
     target.reinit(owned, owned, pattern, grid.communicator);
@@ -110,7 +107,7 @@ void ElasticSystem::make_sparsity()
   }
 }
 
-void ElasticSystem::add_cell(unsigned cell, const std::vector<double>& stiffness)
+void ElasticSystem::add_cell(unsigned cell, const std::vector<double> &stiffness)
 {
   const unsigned n = 3 * grid.nodes_per_cell;
   std::vector<dealii::types::global_dof_index> unknown, all(n);
@@ -165,15 +162,15 @@ void ElasticSystem::assemble(double lambda, double mu)
   }
 }
 
-void ElasticSystem::make_modes(const dealii::Point<3>& centre, double length)
+void ElasticSystem::make_modes(const dealii::Point<3> &centre, double length)
 {
-  for (const RigidMotion& motion : free_rigid_motions(grid, prescribed, centre, length))
+  for (const RigidMotion &motion : free_rigid_motions(grid, prescribed, centre, length))
   {
     NodalVector mode = make_vector(), weighted = make_vector();
     for (unsigned cell = 0; cell < grid.n_cells(); ++cell)
     {
       const auto integrals =
-        integrate_rigid_motion(grid.degree, cell_positions(grid, cell), motion.shift, motion.spin / length, centre);
+          integrate_rigid_motion(grid.degree, cell_positions(grid, cell), motion.shift, motion.spin / length, centre);
       for (unsigned a = 0; a < 3 * grid.nodes_per_cell; ++a)
       {
         const unsigned dof = 3 * grid.nodes_of(cell)[a / 3] + a % 3;
@@ -183,7 +180,8 @@ void ElasticSystem::make_modes(const dealii::Point<3>& centre, double length)
     weighted.compress(dealii::VectorOperation::add);
     for (unsigned dof = 0; dof < 3 * grid.n_owned_nodes; ++dof)
     {
-      mode.local_element(dof) = is_prescribed(dof) ? 0. : motion.at((grid.positions[dof / 3] - centre) / length)[dof % 3];
+      mode.local_element(dof) =
+          is_prescribed(dof) ? 0. : motion.at((grid.positions[dof / 3] - centre) / length)[dof % 3];
     }
     for (std::size_t k = 0; k < modes.size(); ++k)
     {
@@ -199,7 +197,7 @@ void ElasticSystem::make_modes(const dealii::Point<3>& centre, double length)
   }
 }
 
-void ElasticSystem::make_preconditioner(const dealii::Point<3>& centre, double length)
+void ElasticSystem::make_preconditioner(const dealii::Point<3> &centre, double length)
 {
   const unsigned n = 3 * grid.n_owned_nodes;
   const auto motions = all_rigid_motions();
@@ -211,8 +209,9 @@ void ElasticSystem::make_preconditioner(const dealii::Point<3>& centre, double l
       near_null_space[k * n + dof] = motions[k].at((grid.positions[dof / 3] - centre) / length)[dof % 3];
     }
   }
-  // Chosen by measurement on boxes with 30k and 90k unknowns (Q2): all six rigid modes take 20 iterations where the three
-  // translations take 30; two Chebyshev sweeps are four times faster than symmetric Gauss-Seidel, which saves one iteration.
+  // Chosen by measurement on boxes with 30k and 90k unknowns (Q2): all six rigid modes take 20 iterations where the
+  // three translations take 30; two Chebyshev sweeps are four times faster than symmetric Gauss-Seidel, which saves one
+  // iteration.
   dealii::TrilinosWrappers::PreconditionAMG::AdditionalData data;
   data.elliptic = true;
   data.higher_order_elements = grid.degree > 1;
@@ -226,7 +225,8 @@ void ElasticSystem::make_preconditioner(const dealii::Point<3>& centre, double l
   list.set("null space: type", "pre-computed");
   list.set("null space: dimension", 6);
   list.set("null space: vectors", near_null_space.data());
-  // With free modes the matrix is singular: a small shift while the coarse matrices are made keeps the coarsest one regular.
+  // With free modes the matrix is singular: a small shift while the coarse matrices are made keeps the coarsest one
+  // regular.
   std::vector<double> diagonal;
   constexpr double shift = 1e-7;
   const auto first = grid.partitioner->local_range().first;
@@ -250,7 +250,7 @@ void ElasticSystem::make_preconditioner(const dealii::Point<3>& centre, double l
   }
 }
 
-void ElasticSystem::lift(const NodalVector& prescribed_values, NodalVector& load) const
+void ElasticSystem::lift(const NodalVector &prescribed_values, NodalVector &load) const
 {
   if (any_prescribed)
   {
@@ -266,7 +266,7 @@ void ElasticSystem::lift(const NodalVector& prescribed_values, NodalVector& load
   }
 }
 
-void ElasticSystem::reactions(const NodalVector& displacement, const NodalVector& load, NodalVector& result) const
+void ElasticSystem::reactions(const NodalVector &displacement, const NodalVector &load, NodalVector &result) const
 {
   result = 0.;
   if (any_prescribed)
@@ -282,7 +282,7 @@ void ElasticSystem::reactions(const NodalVector& displacement, const NodalVector
   }
 }
 
-double ElasticSystem::remove_resultant(NodalVector& load) const
+double ElasticSystem::remove_resultant(NodalVector &load) const
 {
   scratch = 0.;
   for (std::size_t k = 0; k < modes.size(); ++k)
@@ -293,7 +293,7 @@ double ElasticSystem::remove_resultant(NodalVector& load) const
   return scratch.l2_norm();
 }
 
-void ElasticSystem::remove_rigid_motion(NodalVector& displacement) const
+void ElasticSystem::remove_rigid_motion(NodalVector &displacement) const
 {
   for (std::size_t k = 0; k < modes.size(); ++k)
   {
@@ -301,18 +301,18 @@ void ElasticSystem::remove_rigid_motion(NodalVector& displacement) const
   }
 }
 
-void ElasticSystem::multiply(NodalVector& result, const NodalVector& vector) const
+void ElasticSystem::multiply(NodalVector &result, const NodalVector &vector) const
 {
   matrix.vmult(result, vector);
 }
 
-void ElasticSystem::precondition(NodalVector& result, const NodalVector& residual) const
+void ElasticSystem::precondition(NodalVector &result, const NodalVector &residual) const
 {
   preconditioner.vmult(result, residual);
   remove_rigid_motion(result);
 }
 
-ElasticSystem::Convergence ElasticSystem::solve(NodalVector& x, const NodalVector& load, double tolerance,
+ElasticSystem::Convergence ElasticSystem::solve(NodalVector &x, const NodalVector &load, double tolerance,
                                                 unsigned max_iterations) const
 {
   NodalVector r = make_vector(), z = make_vector(), p = make_vector(), product = make_vector();
@@ -325,8 +325,8 @@ ElasticSystem::Convergence ElasticSystem::solve(NodalVector& x, const NodalVecto
     if (info.iterations == max_iterations || !std::isfinite(info.final_residual))
     {
       std::ostringstream text;
-      text << "the elastic solve did not converge: residual " << info.final_residual << " MPa nm^2 after " << info.iterations
-           << " iterations, wanted " << tolerance;
+      text << "the elastic solve did not converge: residual " << info.final_residual << " MPa nm^2 after "
+           << info.iterations << " iterations, wanted " << tolerance;
       throw std::runtime_error(text.str());
     }
     precondition(z, r);

@@ -1,14 +1,14 @@
 #pragma once
 
 #include <mpi.h>
+
 #include <type_traits>
 #include <vector>
 
 namespace ddfem::fem
 {
 /// Concatenates the ranks' vectors in the order of the ranks; every rank gets the result. Collective.
-template <typename T>
-std::vector<T> gather(const std::vector<T>& local, MPI_Comm communicator)
+template <typename T> std::vector<T> gather(const std::vector<T> &local, MPI_Comm communicator)
 {
   static_assert(std::is_trivially_copyable_v<T>);
   int n_ranks = 1;

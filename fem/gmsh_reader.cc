@@ -12,12 +12,12 @@ namespace ddfem::fem
 {
 namespace
 {
-[[noreturn]] void fail(const std::string& file, const std::string& what)
+[[noreturn]] void fail(const std::string &file, const std::string &what)
 {
   throw std::runtime_error("mesh file '" + file + "': " + what);
 }
 
-std::ifstream open(const std::string& file)
+std::ifstream open(const std::string &file)
 {
   std::ifstream stream(file);
   if (!stream || stream.peek() == std::ifstream::traits_type::eof())
@@ -28,7 +28,7 @@ std::ifstream open(const std::string& file)
 }
 
 /// Moves to the line after `$section`; false when there is none.
-bool find_section(std::istream& stream, const std::string& section)
+bool find_section(std::istream &stream, const std::string &section)
 {
   for (std::string line; std::getline(stream, line);)
   {
@@ -45,7 +45,7 @@ bool find_section(std::istream& stream, const std::string& section)
 }
 
 /// Checks the format and returns the version.
-std::string read_version(const std::string& file, std::istream& stream)
+std::string read_version(const std::string &file, std::istream &stream)
 {
   std::string version;
   int binary = 0;
@@ -65,7 +65,7 @@ std::string read_version(const std::string& file, std::istream& stream)
 }
 
 /// Numbers of elements by gmsh's type number.
-std::map<int, std::size_t> count_elements(const std::string& file, std::istream& stream, const std::string& version)
+std::map<int, std::size_t> count_elements(const std::string &file, std::istream &stream, const std::string &version)
 {
   if (!find_section(stream, "Elements"))
   {
@@ -84,7 +84,9 @@ std::map<int, std::size_t> count_elements(const std::string& file, std::istream&
       stream >> dimension >> entity >> type >> n;
       counts[type] += n;
       std::getline(stream, rest);
-      for (std::size_t i = 0; i < n && std::getline(stream, rest); ++i) {}
+      for (std::size_t i = 0; i < n && std::getline(stream, rest); ++i)
+      {
+      }
     }
   }
   for (std::size_t i = 0; version == "2.2" && i < n_lines && stream; ++i)
@@ -101,7 +103,7 @@ std::map<int, std::size_t> count_elements(const std::string& file, std::istream&
   return counts;
 }
 
-void check_elements(const std::string& file, std::map<int, std::size_t> counts)
+void check_elements(const std::string &file, std::map<int, std::size_t> counts)
 {
   constexpr int quadrilateral = 3, hexahedron = 5;
   const std::map<int, std::string> names = {{2, "triangles"}, {4, "tetrahedra"}, {6, "prisms"}, {7, "pyramids"}};
@@ -109,26 +111,26 @@ void check_elements(const std::string& file, std::map<int, std::size_t> counts)
   {
     const std::size_t n_tetrahedra = counts[4];
     fail(file, "has no first-order hexahedra" +
-                 (n_tetrahedra > 0 ? " but " + std::to_string(n_tetrahedra) + " tetrahedra" : std::string()) +
-                 "; mesh with transfinite volumes and 'Recombine', and give the volume a physical group");
+                   (n_tetrahedra > 0 ? " but " + std::to_string(n_tetrahedra) + " tetrahedra" : std::string()) +
+                   "; mesh with transfinite volumes and 'Recombine', and give the volume a physical group");
   }
-  for (const auto& [type, count] : counts)
+  for (const auto &[type, count] : counts)
   {
     if (count > 0 && type != 15 && type != 1 && type != quadrilateral && type != hexahedron)
     {
       const auto name = names.find(type);
       fail(file, "has " + std::to_string(count) + " " +
-                   (name != names.end() ? name->second : "elements of gmsh type " + std::to_string(type)) +
-                   ", but only first-order hexahedra and their faces can be used");
+                     (name != names.end() ? name->second : "elements of gmsh type " + std::to_string(type)) +
+                     ", but only first-order hexahedra and their faces can be used");
     }
   }
 }
 
-void check_boundary(const std::string& file, const dealii::Triangulation<3>& triangulation)
+void check_boundary(const std::string &file, const dealii::Triangulation<3> &triangulation)
 {
   std::size_t n_bare = 0;
   dealii::Point<3> where;
-  for (const auto& face : triangulation.active_face_iterators())
+  for (const auto &face : triangulation.active_face_iterators())
   {
     // gmsh numbers physical groups from 1; what no group covers keeps deal.II's 0.
     if (face->at_boundary() && face->boundary_id() == 0)
@@ -145,7 +147,7 @@ void check_boundary(const std::string& file, const dealii::Triangulation<3>& tri
 }
 } // namespace
 
-void read_gmsh(const std::string& file, dealii::Triangulation<3>& triangulation)
+void read_gmsh(const std::string &file, dealii::Triangulation<3> &triangulation)
 {
   {
     std::ifstream stream = open(file);
@@ -158,7 +160,7 @@ void read_gmsh(const std::string& file, dealii::Triangulation<3>& triangulation)
     dealii::GridIn<3> reader(triangulation);
     reader.read_msh(stream);
   }
-  catch (const dealii::ExceptionBase& error)
+  catch (const dealii::ExceptionBase &error)
   {
     std::ostringstream reason;
     error.print_info(reason);
@@ -173,7 +175,7 @@ void read_gmsh(const std::string& file, dealii::Triangulation<3>& triangulation)
   check_boundary(file, triangulation);
 }
 
-std::map<dealii::types::boundary_id, std::string> gmsh_surface_names(const std::string& file)
+std::map<dealii::types::boundary_id, std::string> gmsh_surface_names(const std::string &file)
 {
   std::ifstream stream = open(file);
   std::map<dealii::types::boundary_id, std::string> names;

@@ -1,5 +1,5 @@
-// Lagrange polynomials of degree 1 and 2 on equidistant nodes of the unit interval, and their products on the unit cube.
-// Nodes of the cube are numbered lexicographically, the first coordinate fastest.
+// Lagrange polynomials of degree 1 and 2 on equidistant nodes of the unit interval, and their products on the unit
+// cube. Nodes of the cube are numbered lexicographically, the first coordinate fastest.
 #pragma once
 
 #include <array>
@@ -19,8 +19,7 @@ inline Lagrange1d lagrange_1d(unsigned degree, double x)
   {
     return {{1. - x, x, 0.}, {-1., 1., 0.}};
   }
-  return {{(2. * x - 1.) * (x - 1.), 4. * x * (1. - x), x * (2. * x - 1.)},
-          {4. * x - 3., 4. - 8. * x, 4. * x - 1.}};
+  return {{(2. * x - 1.) * (x - 1.), 4. * x * (1. - x), x * (2. * x - 1.)}, {4. * x - 3., 4. - 8. * x, 4. * x - 1.}};
 }
 
 /// Most nodes a cell can have.
@@ -33,8 +32,7 @@ struct LagrangeCell
   std::array<std::array<double, 3>, max_nodes_per_cell> gradient;
 };
 
-template <typename UnitPoint>
-LagrangeCell lagrange_cell(unsigned degree, const UnitPoint& xi)
+template <typename UnitPoint> LagrangeCell lagrange_cell(unsigned degree, const UnitPoint &xi)
 {
   const std::array<Lagrange1d, 3> one = {lagrange_1d(degree, xi[0]), lagrange_1d(degree, xi[1]),
                                          lagrange_1d(degree, xi[2])};

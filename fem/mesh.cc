@@ -32,7 +32,7 @@ bool is_length(double x)
   return std::isfinite(x) && x > 0.;
 }
 
-void make_box(const MeshParameters& parameters, dealii::Triangulation<3>& triangulation)
+void make_box(const MeshParameters &parameters, dealii::Triangulation<3> &triangulation)
 {
   const std::vector<unsigned> subdivisions(parameters.subdivisions.begin(), parameters.subdivisions.end());
   const dealii::Point<3> opposite(parameters.size[0], parameters.size[1], parameters.size[2]);
@@ -40,13 +40,11 @@ void make_box(const MeshParameters& parameters, dealii::Triangulation<3>& triang
 }
 
 /// The undivided mesh, the same on every rank.
-void make_serial(const MeshParameters& parameters, dealii::Triangulation<3>& triangulation)
+void make_serial(const MeshParameters &parameters, dealii::Triangulation<3> &triangulation)
 {
   switch (parameters.shape)
   {
-    case Shape::box:
-      make_box(parameters, triangulation);
-      break;
+    case Shape::box: make_box(parameters, triangulation); break;
     case Shape::cylinder:
       make_cylinder(triangulation, parameters.radius, parameters.height, parameters.subdivisions[0],
                     parameters.subdivisions[2]);
@@ -66,14 +64,14 @@ void make_serial(const MeshParameters& parameters, dealii::Triangulation<3>& tri
 }
 } // namespace
 
-void TriangulationDeleter::operator()(Triangulation* triangulation) const
+void TriangulationDeleter::operator()(Triangulation *triangulation) const
 {
   delete triangulation;
 }
 
-void check(const MeshParameters& parameters)
+void check(const MeshParameters &parameters)
 {
-  const auto& n = parameters.subdivisions;
+  const auto &n = parameters.subdivisions;
   for (unsigned d = 0; d < 3; ++d)
   {
     require(std::isfinite(parameters.origin[d]), "mesh: the origin must be finite");
@@ -104,37 +102,34 @@ void check(const MeshParameters& parameters)
   require(parameters.refinements <= 8, "mesh: more than 8 refinements make too many cells");
 }
 
-TriangulationPointer make_mesh(MPI_Comm communicator, const MeshParameters& parameters)
+TriangulationPointer make_mesh(MPI_Comm communicator, const MeshParameters &parameters)
 {
   check(parameters);
   dealii::Triangulation<3> serial;
   make_serial(parameters, serial);
-  auto* const triangulation = new dealii::parallel::distributed::Triangulation<3>(communicator);
+  auto *const triangulation = new dealii::parallel::distributed::Triangulation<3>(communicator);
   TriangulationPointer owner(triangulation);
   triangulation->copy_triangulation(serial);
   triangulation->refine_global(parameters.refinements);
   return owner;
 }
 
-std::map<dealii::types::boundary_id, std::string> boundary_names(const MeshParameters& parameters)
+std::map<dealii::types::boundary_id, std::string> boundary_names(const MeshParameters &parameters)
 {
   switch (parameters.shape)
   {
-    case Shape::box:
-      return {{0, "x-"}, {1, "x+"}, {2, "y-"}, {3, "y+"}, {4, "z-"}, {5, "z+"}};
-    case Shape::cylinder:
-      return {{0, "side"}, {1, "bottom"}, {2, "top"}};
-    case Shape::gmsh:
-      break;
+    case Shape::box: return {{0, "x-"}, {1, "x+"}, {2, "y-"}, {3, "y+"}, {4, "z-"}, {5, "z+"}};
+    case Shape::cylinder: return {{0, "side"}, {1, "bottom"}, {2, "top"}};
+    case Shape::gmsh: break;
   }
   return gmsh_surface_names(parameters.file);
 }
 
-dealii::types::boundary_id boundary_id_of(const std::map<dealii::types::boundary_id, std::string>& names,
-                                          const std::string& name)
+dealii::types::boundary_id boundary_id_of(const std::map<dealii::types::boundary_id, std::string> &names,
+                                          const std::string &name)
 {
   std::string known;
-  for (const auto& [id, text] : names)
+  for (const auto &[id, text] : names)
   {
     if (text == name)
     {
@@ -152,10 +147,10 @@ dealii::types::boundary_id boundary_id_of(const std::map<dealii::types::boundary
   throw std::invalid_argument(text.str());
 }
 
-std::pair<dealii::Point<3>, dealii::Point<3>> bounding_box(const Triangulation& triangulation)
+std::pair<dealii::Point<3>, dealii::Point<3>> bounding_box(const Triangulation &triangulation)
 {
   std::vector<double> extremes(6, -std::numeric_limits<double>::max());
-  for (const auto& cell : triangulation.active_cell_iterators())
+  for (const auto &cell : triangulation.active_cell_iterators())
   {
     for (unsigned v = 0; cell->is_locally_owned() && v < 8; ++v)
     {
@@ -167,28 +162,29 @@ std::pair<dealii::Point<3>, dealii::Point<3>> bounding_box(const Triangulation& 
     }
   }
   dealii::Utilities::MPI::max(extremes, triangulation.get_communicator(), extremes);
-  return {dealii::Point<3>(-extremes[0], -extremes[1], -extremes[2]), dealii::Point<3>(extremes[3], extremes[4], extremes[5])};
+  return {dealii::Point<3>(-extremes[0], -extremes[1], -extremes[2]),
+          dealii::Point<3>(extremes[3], extremes[4], extremes[5])};
 }
 
-double volume(const Triangulation& triangulation, unsigned mapping_degree)
+double volume(const Triangulation &triangulation, unsigned mapping_degree)
 {
   return dealii::GridTools::volume(triangulation, dealii::MappingQ<3>(mapping_degree));
 }
 
-std::map<dealii::types::boundary_id, double> boundary_areas(const Triangulation& triangulation, unsigned mapping_degree)
+std::map<dealii::types::boundary_id, double> boundary_areas(const Triangulation &triangulation, unsigned mapping_degree)
 {
   const dealii::MappingQ<3> mapping(mapping_degree);
   const dealii::FE_Nothing<3> element;
   dealii::FEFaceValues<3> values(mapping, element, dealii::QGauss<2>(mapping_degree + 2), dealii::update_JxW_values);
   std::map<dealii::types::boundary_id, double> areas;
-  for (const auto& cell : triangulation.active_cell_iterators())
+  for (const auto &cell : triangulation.active_cell_iterators())
   {
     for (unsigned f = 0; cell->is_locally_owned() && f < 6; ++f)
     {
       if (cell->face(f)->at_boundary())
       {
         values.reinit(cell, f);
-        double& area = areas[cell->face(f)->boundary_id()];
+        double &area = areas[cell->face(f)->boundary_id()];
         for (const double weight : values.get_JxW_values())
         {
           area += weight;
@@ -202,23 +198,23 @@ std::map<dealii::types::boundary_id, double> boundary_areas(const Triangulation&
     double area;
   };
   std::vector<Entry> local;
-  for (const auto& [id, area] : areas)
+  for (const auto &[id, area] : areas)
   {
     local.push_back({id, area});
   }
   areas.clear();
-  for (const auto& [id, area] : gather(local, triangulation.get_communicator()))
+  for (const auto &[id, area] : gather(local, triangulation.get_communicator()))
   {
     areas[id] += area;
   }
   return areas;
 }
 
-std::vector<BoundaryFacet> boundary_facets(const Triangulation& triangulation)
+std::vector<BoundaryFacet> boundary_facets(const Triangulation &triangulation)
 {
   // Vertices of each face, counter-clockwise seen from outside.
   constexpr std::array<std::array<unsigned, 4>, 6> corners = {
-    {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
   struct Record
   {
     std::array<unsigned, 5> key; // cell and face, the same on any number of ranks
@@ -226,7 +222,7 @@ std::vector<BoundaryFacet> boundary_facets(const Triangulation& triangulation)
     dealii::types::boundary_id boundary;
   };
   std::vector<Record> local;
-  for (const auto& cell : triangulation.active_cell_iterators())
+  for (const auto &cell : triangulation.active_cell_iterators())
   {
     for (unsigned f = 0; cell->is_locally_owned() && f < 6; ++f)
     {
@@ -244,9 +240,9 @@ std::vector<BoundaryFacet> boundary_facets(const Triangulation& triangulation)
     }
   }
   std::vector<Record> all = gather(local, triangulation.get_communicator());
-  std::sort(all.begin(), all.end(), [](const Record& a, const Record& b) { return a.key < b.key; });
+  std::sort(all.begin(), all.end(), [](const Record &a, const Record &b) { return a.key < b.key; });
   std::vector<BoundaryFacet> facets;
-  for (const auto& [key, x, boundary] : all)
+  for (const auto &[key, x, boundary] : all)
   {
     facets.push_back({{dealii::Point<3>(x[0], x[1], x[2]), dealii::Point<3>(x[3], x[4], x[5]),
                        dealii::Point<3>(x[6], x[7], x[8]), dealii::Point<3>(x[9], x[10], x[11])},

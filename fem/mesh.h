@@ -4,10 +4,10 @@
 
 #include <deal.II/base/point.h>
 #include <deal.II/base/types.h>
+#include <mpi.h>
 
 #include <array>
 #include <map>
-#include <mpi.h>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,7 +32,8 @@ struct MeshParameters
   /// Cylinder only.
   double radius = 500.;
   double height = 2000.;
-  /// Box: cells per axis. Cylinder: [0] cells across a diameter (at least 3; [1] is not used), [2] cells along the axis.
+  /// Box: cells per axis. Cylinder: [0] cells across a diameter (at least 3; [1] is not used), [2] cells along the
+  /// axis.
   std::array<unsigned, 3> subdivisions = {8, 8, 8};
   /// gmsh: path of the file (ASCII, format 2.2 or 4.1, first-order hexahedra).
   std::string file;
@@ -42,42 +43,46 @@ struct MeshParameters
   unsigned refinements = 0;
 };
 
-/// Throws std::invalid_argument with one sentence when a value makes no sense (lengths not positive, no cells, no file name).
-void check(const MeshParameters& parameters);
+/// Throws std::invalid_argument with one sentence when a value makes no sense (lengths not positive, no cells, no file
+/// name).
+void check(const MeshParameters &parameters);
 
-/// Builds the mesh. Collective. Boundary ids: box x-, x+, y-, y+, z-, z+ = 0..5; cylinder side 0, bottom (z-) 1, top (z+) 2;
-/// gmsh: the physical surface numbers. The curved side of a cylinder carries deal.II's cylindrical manifold, so that a
-/// mapping of degree two has an error of the fourth order in the cell size; gmsh meshes have flat-edged cells.
+/// Builds the mesh. Collective. Boundary ids: box x-, x+, y-, y+, z-, z+ = 0..5; cylinder side 0, bottom (z-) 1, top
+/// (z+) 2; gmsh: the physical surface numbers. The curved side of a cylinder carries deal.II's cylindrical manifold, so
+/// that a mapping of degree two has an error of the fourth order in the cell size; gmsh meshes have flat-edged cells.
 /// Throws std::invalid_argument (see check()) and std::runtime_error for a file that cannot be opened or read, that has
 /// no hexahedra or other cells besides, or whose boundary is not covered by physical surfaces.
-TriangulationPointer make_mesh(MPI_Comm communicator, const MeshParameters& parameters);
+TriangulationPointer make_mesh(MPI_Comm communicator, const MeshParameters &parameters);
 
 /// Names of the boundary ids: "x-", ..., "z+"; "side", "bottom", "top"; gmsh: names of the physical surfaces, and the
-/// number as text for one without a name (`ids` present in the mesh, see boundary_areas()). Reads the file's header only.
-std::map<dealii::types::boundary_id, std::string> boundary_names(const MeshParameters& parameters);
+/// number as text for one without a name (`ids` present in the mesh, see boundary_areas()). Reads the file's header
+/// only.
+std::map<dealii::types::boundary_id, std::string> boundary_names(const MeshParameters &parameters);
 
-/// Inverse of boundary_names(); a number written as text is accepted too. Throws std::invalid_argument that lists the known
-/// names.
-dealii::types::boundary_id boundary_id_of(const std::map<dealii::types::boundary_id, std::string>& names,
-                                          const std::string& name);
+/// Inverse of boundary_names(); a number written as text is accepted too. Throws std::invalid_argument that lists the
+/// known names.
+dealii::types::boundary_id boundary_id_of(const std::map<dealii::types::boundary_id, std::string> &names,
+                                          const std::string &name);
 
 /// Lowest and highest corner (nm) of the box around all vertices. Collective.
-std::pair<dealii::Point<3>, dealii::Point<3>> bounding_box(const Triangulation& triangulation);
+std::pair<dealii::Point<3>, dealii::Point<3>> bounding_box(const Triangulation &triangulation);
 
 /// Volume (nm^3) with a mapping of the given degree. Collective.
-double volume(const Triangulation& triangulation, unsigned mapping_degree = 2);
+double volume(const Triangulation &triangulation, unsigned mapping_degree = 2);
 
 /// Area (nm^2) of every boundary id of the mesh, with a mapping of the given degree. Collective.
-std::map<dealii::types::boundary_id, double> boundary_areas(const Triangulation& triangulation, unsigned mapping_degree = 2);
+std::map<dealii::types::boundary_id, double> boundary_areas(const Triangulation &triangulation,
+                                                            unsigned mapping_degree = 2);
 
 /// One quadrilateral of the boundary.
 struct BoundaryFacet
 {
-  /// Corners (nm), counter-clockwise seen from outside; on curved boundaries the facet between them is only an approximation.
+  /// Corners (nm), counter-clockwise seen from outside; on curved boundaries the facet between them is only an
+  /// approximation.
   std::array<dealii::Point<3>, 4> vertices;
   dealii::types::boundary_id boundary;
 };
 
 /// Every facet of the boundary on every rank, in an order that does not depend on the number of ranks. Collective.
-std::vector<BoundaryFacet> boundary_facets(const Triangulation& triangulation);
+std::vector<BoundaryFacet> boundary_facets(const Triangulation &triangulation);
 } // namespace ddfem::fem

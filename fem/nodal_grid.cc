@@ -20,15 +20,13 @@ namespace ddfem::fem
 class NodalGrid::Builder
 {
 public:
-  Builder(const Triangulation& triangulation, NodalGrid& target)
-    : grid(target)
-    , element(dealii::FE_Q<3>(grid.degree), 3)
-    , dof_handler(triangulation)
-    , scalar_index(dealii::FETools::lexicographic_to_hierarchic_numbering<3>(grid.degree))
-    , dofs(element.n_dofs_per_cell())
+  Builder(const Triangulation &triangulation, NodalGrid &target)
+      : grid(target), element(dealii::FE_Q<3>(grid.degree), 3), dof_handler(triangulation),
+        scalar_index(dealii::FETools::lexicographic_to_hierarchic_numbering<3>(grid.degree)),
+        dofs(element.n_dofs_per_cell())
   {
     dof_handler.distribute_dofs(element);
-    const dealii::IndexSet& owned = dof_handler.locally_owned_dofs();
+    const dealii::IndexSet &owned = dof_handler.locally_owned_dofs();
     dealii::IndexSet active;
     dealii::DoFTools::extract_locally_active_dofs(dof_handler, active);
     grid.partitioner = std::make_shared<dealii::Utilities::MPI::Partitioner>(owned, active, grid.communicator);
@@ -43,7 +41,7 @@ public:
     const dealii::MappingQ<3> mapping(grid.degree);
     dealii::FEValues<3> values(mapping, element, nodes, dealii::update_quadrature_points);
     grid.positions.resize((grid.partitioner->locally_owned_size() + grid.partitioner->n_ghost_indices()) / 3);
-    for (const auto& cell : dof_handler.active_cell_iterators())
+    for (const auto &cell : dof_handler.active_cell_iterators())
     {
       if (!cell->is_locally_owned())
       {
@@ -64,7 +62,7 @@ public:
   void fill_boundaries()
   {
     grid.node_boundaries.resize(grid.positions.size());
-    for (const auto& cell : dof_handler.active_cell_iterators())
+    for (const auto &cell : dof_handler.active_cell_iterators())
     {
       // A ghost cell can have a boundary face that touches a node of ours although none of our own cells has one.
       if (cell->is_artificial() || !cell->at_boundary())
@@ -80,7 +78,7 @@ public:
         }
       }
     }
-    for (auto& ids : grid.node_boundaries)
+    for (auto &ids : grid.node_boundaries)
     {
       std::sort(ids.begin(), ids.end());
       ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -88,8 +86,7 @@ public:
   }
 
 private:
-  template <typename Cell>
-  void add_faces(const Cell& cell)
+  template <typename Cell> void add_faces(const Cell &cell)
   {
     const unsigned index = grid.n_cells() - 1;
     for (const unsigned f : cell->face_indices())
@@ -118,7 +115,8 @@ private:
     std::array<unsigned, 3> local;
     for (unsigned c = 0; c < 3; ++c)
     {
-      local[c] = grid.partitioner->global_to_local(dofs[element.component_to_system_index(c, scalar_index[lexicographic])]);
+      local[c] =
+          grid.partitioner->global_to_local(dofs[element.component_to_system_index(c, scalar_index[lexicographic])]);
     }
     if (local[0] % 3 != 0 || local[1] != local[0] + 1 || local[2] != local[0] + 2)
     {
@@ -127,17 +125,16 @@ private:
     return local[0] / 3;
   }
 
-  NodalGrid& grid;
+  NodalGrid &grid;
   dealii::FESystem<3> element;
   dealii::DoFHandler<3> dof_handler;
   std::vector<unsigned> scalar_index; // deal.II's index within the cell of a lexicographic one
   std::vector<dealii::types::global_dof_index> dofs;
 };
 
-NodalGrid::NodalGrid(const Triangulation& triangulation, unsigned element_degree)
-  : communicator(triangulation.get_communicator())
-  , degree(element_degree)
-  , nodes_per_cell((element_degree + 1) * (element_degree + 1) * (element_degree + 1))
+NodalGrid::NodalGrid(const Triangulation &triangulation, unsigned element_degree)
+    : communicator(triangulation.get_communicator()), degree(element_degree),
+      nodes_per_cell((element_degree + 1) * (element_degree + 1) * (element_degree + 1))
 {
   if (triangulation.n_global_active_cells() == 0 || !triangulation.all_reference_cells_are_hyper_cube())
   {

@@ -44,9 +44,8 @@ std::vector<double> inverse_of(std::vector<double> a, unsigned n)
 }
 } // namespace
 
-PatchFit::PatchFit(const NodalGrid& nodal_grid, const std::vector<dealii::Point<3>>& gauss)
-  : grid(nodal_grid)
-  , n_terms(nodal_grid.degree == 1 ? 4 : 10)
+PatchFit::PatchFit(const NodalGrid &nodal_grid, const std::vector<dealii::Point<3>> &gauss)
+    : grid(nodal_grid), n_terms(nodal_grid.degree == 1 ? 4 : 10)
 {
   make_partitioner();
   measure_patches();
@@ -56,7 +55,7 @@ PatchFit::PatchFit(const NodalGrid& nodal_grid, const std::vector<dealii::Point<
 
 void PatchFit::make_partitioner()
 {
-  const auto& three = *grid.partitioner;
+  const auto &three = *grid.partitioner;
   dealii::IndexSet owned(2 * three.size()), ghosts(2 * three.size());
   owned.add_range(2 * three.local_range().first, 2 * three.local_range().second);
   for (const auto index : three.ghost_indices())
@@ -93,20 +92,20 @@ void PatchFit::measure_patches()
   }
 }
 
-PatchFit::Basis PatchFit::basis(unsigned patch, const dealii::Point<3>& x) const
+PatchFit::Basis PatchFit::basis(unsigned patch, const dealii::Point<3> &x) const
 {
   const auto s = (x - grid.positions[patch]) / sizes[patch];
   return {1., s[0], s[1], s[2], s[0] * s[0], s[1] * s[1], s[2] * s[2], s[0] * s[1], s[0] * s[2], s[1] * s[2]};
 }
 
-void PatchFit::make_normal_matrices(const std::vector<dealii::Point<3>>& gauss)
+void PatchFit::make_normal_matrices(const std::vector<dealii::Point<3>> &gauss)
 {
   // The upper triangles, packed six entries to a vector.
   const unsigned n_entries = n_terms * (n_terms + 1) / 2;
   std::vector<NodeVector> sums((n_entries + 5) / 6, NodeVector(partitioner));
   for (unsigned cell = 0; cell < grid.n_cells(); ++cell)
   {
-    for (const auto& unit_point : gauss)
+    for (const auto &unit_point : gauss)
     {
       const LagrangeCell shape = lagrange_cell(grid.degree, unit_point);
       dealii::Point<3> x;
@@ -129,7 +128,7 @@ void PatchFit::make_normal_matrices(const std::vector<dealii::Point<3>>& gauss)
       }
     }
   }
-  for (NodeVector& sum : sums)
+  for (NodeVector &sum : sums)
   {
     sum.compress(dealii::VectorOperation::add);
     sum.update_ghost_values();
@@ -137,7 +136,7 @@ void PatchFit::make_normal_matrices(const std::vector<dealii::Point<3>>& gauss)
   invert_normal_matrices(sums);
 }
 
-void PatchFit::invert_normal_matrices(const std::vector<NodeVector>& sums)
+void PatchFit::invert_normal_matrices(const std::vector<NodeVector> &sums)
 {
   inverses.resize(grid.positions.size());
   std::vector<double> matrix(n_terms * n_terms);
@@ -184,7 +183,7 @@ void PatchFit::make_contributions()
     }
   }
   NodeVector total(partitioner);
-  for (const auto& [key, weight] : weights)
+  for (const auto &[key, weight] : weights)
   {
     contributions.push_back({key.first, key.second, weight});
     total.local_element(6 * key.first) += weight;
@@ -197,7 +196,7 @@ void PatchFit::make_contributions()
   }
 }
 
-std::vector<double> PatchFit::nodal_values(const std::vector<Six>& at_gauss_points) const
+std::vector<double> PatchFit::nodal_values(const std::vector<Six> &at_gauss_points) const
 {
   std::vector<NodeVector> moments(n_terms, NodeVector(partitioner));
   const std::size_t per_cell = points.size() / std::max(1u, grid.n_cells());
@@ -216,13 +215,13 @@ std::vector<double> PatchFit::nodal_values(const std::vector<Six>& at_gauss_poin
       }
     }
   }
-  for (NodeVector& moment : moments)
+  for (NodeVector &moment : moments)
   {
     moment.compress(dealii::VectorOperation::add);
     moment.update_ghost_values();
   }
   NodeVector result(partitioner);
-  for (const auto& [node, patch, weight] : contributions)
+  for (const auto &[node, patch, weight] : contributions)
   {
     const Basis p = basis(patch, grid.positions[node]);
     for (unsigned i = 0; i < n_terms; ++i)
@@ -234,7 +233,8 @@ std::vector<double> PatchFit::nodal_values(const std::vector<Six>& at_gauss_poin
       }
       for (unsigned c = 0; c < 6; ++c)
       {
-        result.local_element(6 * node + c) += weight / coverage[node] * factor * moments[i].local_element(6 * patch + c);
+        result.local_element(6 * node + c) +=
+            weight / coverage[node] * factor * moments[i].local_element(6 * patch + c);
       }
     }
   }

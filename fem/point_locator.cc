@@ -18,7 +18,7 @@ constexpr double far = std::numeric_limits<double>::max();
 /// Points this far outside a cell, in unit coordinates, still count as within.
 constexpr double rounding = 1e-10;
 
-double distance_outside(const dealii::Point<3>& xi)
+double distance_outside(const dealii::Point<3> &xi)
 {
   double outside = 0.;
   for (unsigned d = 0; d < 3; ++d)
@@ -28,16 +28,15 @@ double distance_outside(const dealii::Point<3>& xi)
   return outside <= rounding ? 0. : outside;
 }
 
-bool strictly_inside(const dealii::Point<3>& xi)
+bool strictly_inside(const dealii::Point<3> &xi)
 {
   constexpr double margin = 1e-8;
   return std::all_of(xi.begin_raw(), xi.end_raw(), [](double x) { return x > margin && x < 1. - margin; });
 }
 } // namespace
 
-PointLocator::PointLocator(const NodalGrid& nodal_grid, double outside_tolerance)
-  : grid(nodal_grid)
-  , tolerance(outside_tolerance)
+PointLocator::PointLocator(const NodalGrid &nodal_grid, double outside_tolerance)
+    : grid(nodal_grid), tolerance(outside_tolerance)
 {
   MPI_Comm_rank(grid.communicator, &rank);
   make_boxes();
@@ -72,7 +71,7 @@ void PointLocator::make_bins()
   }
   lower = boxes[0].first;
   dealii::Point<3> upper = boxes[0].second;
-  for (const auto& [low, high] : boxes)
+  for (const auto &[low, high] : boxes)
   {
     for (unsigned d = 0; d < 3; ++d)
     {
@@ -105,14 +104,14 @@ void PointLocator::make_bins()
     }
   }
   bin_start.push_back(0);
-  for (const auto& bin : cells)
+  for (const auto &bin : cells)
   {
     bin_cells.insert(bin_cells.end(), bin.begin(), bin.end());
     bin_start.push_back(static_cast<unsigned>(bin_cells.size()));
   }
 }
 
-std::array<unsigned, 3> PointLocator::bin_of(const dealii::Point<3>& x) const
+std::array<unsigned, 3> PointLocator::bin_of(const dealii::Point<3> &x) const
 {
   std::array<unsigned, 3> bin;
   for (unsigned d = 0; d < 3; ++d)
@@ -122,9 +121,9 @@ std::array<unsigned, 3> PointLocator::bin_of(const dealii::Point<3>& x) const
   return bin;
 }
 
-bool PointLocator::invert_mapping(unsigned cell, const dealii::Point<3>& x, dealii::Point<3>& xi) const
+bool PointLocator::invert_mapping(unsigned cell, const dealii::Point<3> &x, dealii::Point<3> &xi) const
 {
-  const auto& [low, high] = boxes[cell];
+  const auto &[low, high] = boxes[cell];
   for (unsigned d = 0; d < 3; ++d)
   {
     // Written so that a coordinate that is not a number fails.
@@ -133,7 +132,7 @@ bool PointLocator::invert_mapping(unsigned cell, const dealii::Point<3>& x, deal
       return false;
     }
   }
-  const auto position = [&](unsigned a) -> const dealii::Point<3>& { return grid.positions[grid.nodes_of(cell)[a]]; };
+  const auto position = [&](unsigned a) -> const dealii::Point<3> & { return grid.positions[grid.nodes_of(cell)[a]]; };
   xi = dealii::Point<3>(0.5, 0.5, 0.5);
   constexpr unsigned most_steps = 20;
   constexpr double accuracy = 1e-13, lost = 3.;
@@ -159,7 +158,7 @@ bool PointLocator::invert_mapping(unsigned cell, const dealii::Point<3>& x, deal
   return false;
 }
 
-PointLocator::Place PointLocator::locate(const dealii::Point<3>& x, unsigned hint) const
+PointLocator::Place PointLocator::locate(const dealii::Point<3> &x, unsigned hint) const
 {
   Place best{no_cell, {}, far};
   dealii::Point<3> xi;
@@ -187,8 +186,8 @@ PointLocator::Place PointLocator::locate(const dealii::Point<3>& x, unsigned hin
   return best;
 }
 
-void PointLocator::elect(const std::vector<dealii::Point<3>>& points, const std::vector<Place>& places,
-                         std::vector<int>& winners) const
+void PointLocator::elect(const std::vector<dealii::Point<3>> &points, const std::vector<Place> &places,
+                         std::vector<int> &winners) const
 {
   struct Candidate
   {
@@ -196,7 +195,7 @@ void PointLocator::elect(const std::vector<dealii::Point<3>>& points, const std:
     int rank;
   };
   std::vector<Candidate> candidates;
-  for (const Place& place : places)
+  for (const Place &place : places)
   {
     candidates.push_back({place.outside, rank});
   }
@@ -216,8 +215,8 @@ void PointLocator::elect(const std::vector<dealii::Point<3>>& points, const std:
   }
 }
 
-std::vector<double> PointLocator::evaluate(const std::vector<dealii::Point<3>>& points, unsigned n_components,
-                                           const std::vector<double>& fields)
+std::vector<double> PointLocator::evaluate(const std::vector<dealii::Point<3>> &points, unsigned n_components,
+                                           const std::vector<double> &fields)
 {
   hints.resize(points.size(), no_cell);
   std::vector<Place> places;
@@ -243,7 +242,7 @@ std::vector<double> PointLocator::evaluate(const std::vector<dealii::Point<3>>& 
     const LagrangeCell shape = lagrange_cell(grid.degree, xi);
     for (unsigned a = 0; a < grid.nodes_per_cell; ++a)
     {
-      const double* const nodal = &fields[std::size_t{grid.nodes_of(places[i].cell)[a]} * n_components];
+      const double *const nodal = &fields[std::size_t{grid.nodes_of(places[i].cell)[a]} * n_components];
       for (unsigned c = 0; c < n_components; ++c)
       {
         values[i * n_components + c] += shape.value[a] * nodal[c];

@@ -9,21 +9,22 @@
 
 namespace ddfem::fem
 {
-/// Finds the cells of points and evaluates nodal fields there. Inverts the same isoparametric mapping as the elements use.
+/// Finds the cells of points and evaluates nodal fields there. Inverts the same isoparametric mapping as the elements
+/// use.
 ///
-/// Every rank looks in its own cells. A point is evaluated by the rank whose cell contains it (the lowest, if several do), or
-/// for a point just outside the mesh by the one whose cell is nearest in unit coordinates, clamped to the cell.
+/// Every rank looks in its own cells. A point is evaluated by the rank whose cell contains it (the lowest, if several
+/// do), or for a point just outside the mesh by the one whose cell is nearest in unit coordinates, clamped to the cell.
 class PointLocator
 {
 public:
   /// `tolerance`: how far outside, as a fraction of a cell, a point may be.
-  PointLocator(const NodalGrid& grid, double tolerance);
+  PointLocator(const NodalGrid &grid, double tolerance);
 
-  /// Values of fields at points: `fields` has n_components numbers for each local node; so has the result for each point, the
-  /// same bits on all ranks. The result does not depend on earlier calls. Collective.
-  /// Throws std::runtime_error for a point outside.
-  std::vector<double> evaluate(const std::vector<dealii::Point<3>>& points, unsigned n_components,
-                               const std::vector<double>& fields);
+  /// Values of fields at points: `fields` has n_components numbers for each local node; so has the result for each
+  /// point, the same bits on all ranks. The result does not depend on earlier calls. Collective. Throws
+  /// std::runtime_error for a point outside.
+  std::vector<double> evaluate(const std::vector<dealii::Point<3>> &points, unsigned n_components,
+                               const std::vector<double> &fields);
 
 private:
   struct Place
@@ -35,17 +36,18 @@ private:
 
   void make_boxes();
   void make_bins();
-  std::array<unsigned, 3> bin_of(const dealii::Point<3>& x) const;
-  std::size_t bin_index(const std::array<unsigned, 3>& bin) const
+  std::array<unsigned, 3> bin_of(const dealii::Point<3> &x) const;
+  std::size_t bin_index(const std::array<unsigned, 3> &bin) const
   {
     return (std::size_t{bin[2]} * n_bins[1] + bin[1]) * n_bins[0] + bin[0];
   }
-  Place locate(const dealii::Point<3>& x, unsigned hint) const;
+  Place locate(const dealii::Point<3> &x, unsigned hint) const;
   /// False when the point is not near the cell.
-  bool invert_mapping(unsigned cell, const dealii::Point<3>& x, dealii::Point<3>& xi) const;
-  void elect(const std::vector<dealii::Point<3>>& points, const std::vector<Place>& places, std::vector<int>& winners) const;
+  bool invert_mapping(unsigned cell, const dealii::Point<3> &x, dealii::Point<3> &xi) const;
+  void elect(const std::vector<dealii::Point<3>> &points, const std::vector<Place> &places,
+             std::vector<int> &winners) const;
 
-  const NodalGrid& grid;
+  const NodalGrid &grid;
   double tolerance;
   int rank = 0;
   dealii::Point<3> lower;

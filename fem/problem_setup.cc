@@ -8,12 +8,13 @@
 
 namespace ddfem::fem
 {
-void check(const ElasticProblem::Parameters& parameters, const Moduli& moduli)
+void check(const ElasticProblem::Parameters &parameters, const Moduli &moduli)
 {
   require(parameters.degree == 1 || parameters.degree == 2, "the degree of the elements must be 1 or 2, but is ",
           parameters.degree);
   require(parameters.relative_tolerance > 0. && parameters.relative_tolerance < 1.,
-          "the relative tolerance of the elastic solve must lie between 0 and 1, but is ", parameters.relative_tolerance);
+          "the relative tolerance of the elastic solve must lie between 0 and 1, but is ",
+          parameters.relative_tolerance);
   require(parameters.traction_tolerance > 0. && parameters.traction_tolerance < 1.,
           "the tolerance of the tractions must lie between 0 and 1, but is ", parameters.traction_tolerance);
   require(parameters.outside_tolerance >= 0. && parameters.outside_tolerance < 1.,
@@ -22,12 +23,12 @@ void check(const ElasticProblem::Parameters& parameters, const Moduli& moduli)
   require(moduli.nu > -1. && moduli.nu < 0.5, "Poisson's ratio must lie between -1 and 0.5, but is ", moduli.nu);
 }
 
-double lame_lambda(const Moduli& moduli)
+double lame_lambda(const Moduli &moduli)
 {
   return 2. * moduli.mu * moduli.nu / (1. - 2. * moduli.nu);
 }
 
-std::pair<double, dealii::Point<3>> volume_and_centre(const NodalGrid& grid)
+std::pair<double, dealii::Point<3>> volume_and_centre(const NodalGrid &grid)
 {
   std::array<double, 4> sums{};
   std::vector<dealii::Point<3>> nodes(grid.nodes_per_cell);
@@ -48,12 +49,13 @@ std::pair<double, dealii::Point<3>> volume_and_centre(const NodalGrid& grid)
   return {sums[0], dealii::Point<3>(sums[1] / sums[0], sums[2] / sums[0], sums[3] / sums[0])};
 }
 
-std::vector<std::array<int, 3>> assign_conditions(const NodalGrid& grid, const std::vector<DisplacementCondition>& conditions)
+std::vector<std::array<int, 3>> assign_conditions(const NodalGrid &grid,
+                                                  const std::vector<DisplacementCondition> &conditions)
 {
   std::vector<std::array<int, 3>> owner(grid.positions.size(), {-1, -1, -1});
   for (std::size_t node = 0; node < owner.size(); ++node)
   {
-    const auto& ids = grid.node_boundaries[node];
+    const auto &ids = grid.node_boundaries[node];
     for (std::size_t k = 0; k < conditions.size() && !ids.empty(); ++k)
     {
       const bool here = std::find(ids.begin(), ids.end(), conditions[k].boundary) != ids.end();
@@ -69,10 +71,10 @@ std::vector<std::array<int, 3>> assign_conditions(const NodalGrid& grid, const s
   return owner;
 }
 
-std::vector<std::array<bool, 3>> flags_of(const std::vector<std::array<int, 3>>& owner)
+std::vector<std::array<bool, 3>> flags_of(const std::vector<std::array<int, 3>> &owner)
 {
   std::vector<std::array<bool, 3>> flags;
-  for (const auto& k : owner)
+  for (const auto &k : owner)
   {
     flags.push_back({k[0] >= 0, k[1] >= 0, k[2] >= 0});
   }

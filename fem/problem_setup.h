@@ -11,17 +11,18 @@
 namespace ddfem::fem
 {
 /// Throws std::invalid_argument for values without sense.
-void check(const ElasticProblem::Parameters& parameters, const Moduli& moduli);
+void check(const ElasticProblem::Parameters &parameters, const Moduli &moduli);
 
 /// First Lame constant, MPa.
-double lame_lambda(const Moduli& moduli);
+double lame_lambda(const Moduli &moduli);
 
 /// Volume (nm^3) and its centre (nm). Collective.
-std::pair<double, dealii::Point<3>> volume_and_centre(const NodalGrid& grid);
+std::pair<double, dealii::Point<3>> volume_and_centre(const NodalGrid &grid);
 
 /// Which condition prescribes each component of each local node: the first that does, or -1.
-std::vector<std::array<int, 3>> assign_conditions(const NodalGrid& grid, const std::vector<DisplacementCondition>& conditions);
+std::vector<std::array<int, 3>> assign_conditions(const NodalGrid &grid,
+                                                  const std::vector<DisplacementCondition> &conditions);
 
 /// Which components of each node some condition prescribes.
-std::vector<std::array<bool, 3>> flags_of(const std::vector<std::array<int, 3>>& owner);
+std::vector<std::array<bool, 3>> flags_of(const std::vector<std::array<int, 3>> &owner);
 } // namespace ddfem::fem

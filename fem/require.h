@@ -6,8 +6,7 @@
 namespace ddfem::fem
 {
 /// Throws std::invalid_argument with a message made of `parts` unless the condition holds.
-template <typename... Parts>
-void require(bool condition, const Parts&... parts)
+template <typename... Parts> void require(bool condition, const Parts &...parts)
 {
   if (!condition)
   {

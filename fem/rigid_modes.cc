@@ -9,8 +9,9 @@ namespace
 {
 using Matrix6 = std::array<std::array<double, 6>, 6>;
 
-/// Rotates rows and columns p, q of a symmetric matrix so that its (p, q) entry vanishes, and the columns of `vectors` along.
-void jacobi_rotation(Matrix6& matrix, Matrix6& vectors, unsigned p, unsigned q)
+/// Rotates rows and columns p, q of a symmetric matrix so that its (p, q) entry vanishes, and the columns of `vectors`
+/// along.
+void jacobi_rotation(Matrix6 &matrix, Matrix6 &vectors, unsigned p, unsigned q)
 {
   if (matrix[p][q] == 0.)
   {
@@ -19,19 +20,29 @@ void jacobi_rotation(Matrix6& matrix, Matrix6& vectors, unsigned p, unsigned q)
   const double theta = (matrix[q][q] - matrix[p][p]) / (2. * matrix[p][q]);
   const double t = (theta >= 0. ? 1. : -1.) / (std::abs(theta) + std::sqrt(theta * theta + 1.));
   const double c = 1. / std::sqrt(t * t + 1.), s = t * c;
-  const auto rotate = [c, s](double& x, double& y)
+  const auto rotate = [c, s](double &x, double &y)
   {
     const double old = x;
     x = c * old - s * y;
     y = s * old + c * y;
   };
-  for (unsigned k = 0; k < 6; ++k) { rotate(matrix[k][p], matrix[k][q]); }
-  for (unsigned k = 0; k < 6; ++k) { rotate(matrix[p][k], matrix[q][k]); }
-  for (unsigned k = 0; k < 6; ++k) { rotate(vectors[k][p], vectors[k][q]); }
+  for (unsigned k = 0; k < 6; ++k)
+  {
+    rotate(matrix[k][p], matrix[k][q]);
+  }
+  for (unsigned k = 0; k < 6; ++k)
+  {
+    rotate(matrix[p][k], matrix[q][k]);
+  }
+  for (unsigned k = 0; k < 6; ++k)
+  {
+    rotate(vectors[k][p], vectors[k][q]);
+  }
 }
 
-/// Eigenvectors (columns) of a symmetric matrix, which becomes diagonal; cyclic Jacobi, convergent to rounding in a few sweeps.
-Matrix6 diagonalise(Matrix6& matrix)
+/// Eigenvectors (columns) of a symmetric matrix, which becomes diagonal; cyclic Jacobi, convergent to rounding in a few
+/// sweeps.
+Matrix6 diagonalise(Matrix6 &matrix)
 {
   Matrix6 vectors{};
   for (unsigned k = 0; k < 6; ++k)
@@ -52,8 +63,8 @@ Matrix6 diagonalise(Matrix6& matrix)
 }
 
 /// Gram matrix of the six motions over the owned prescribed unknowns, summed over ranks.
-Matrix6 gram_matrix(const NodalGrid& grid, const std::vector<std::array<bool, 3>>& prescribed, const dealii::Point<3>& centre,
-                    double length)
+Matrix6 gram_matrix(const NodalGrid &grid, const std::vector<std::array<bool, 3>> &prescribed,
+                    const dealii::Point<3> &centre, double length)
 {
   const auto motions = all_rigid_motions();
   Matrix6 gram{};
@@ -87,8 +98,8 @@ std::array<RigidMotion, 6> all_rigid_motions()
   return motions;
 }
 
-std::vector<RigidMotion> free_rigid_motions(const NodalGrid& grid, const std::vector<std::array<bool, 3>>& prescribed,
-                                            const dealii::Point<3>& centre, double length)
+std::vector<RigidMotion> free_rigid_motions(const NodalGrid &grid, const std::vector<std::array<bool, 3>> &prescribed,
+                                            const dealii::Point<3> &centre, double length)
 {
   Matrix6 gram = gram_matrix(grid, prescribed, centre, length);
   const Matrix6 vectors = diagonalise(gram);

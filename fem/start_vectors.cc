@@ -4,12 +4,12 @@
 
 namespace ddfem::fem
 {
-StartVectors::StartVectors(const ElasticSystem& elastic_system, std::size_t most_vectors)
-  : system(elastic_system)
-  , most(most_vectors)
-{}
+StartVectors::StartVectors(const ElasticSystem &elastic_system, std::size_t most_vectors)
+    : system(elastic_system), most(most_vectors)
+{
+}
 
-void StartVectors::remember(const NodalVector& solution)
+void StartVectors::remember(const NodalVector &solution)
 {
   Start latest{solution, system.make_vector()};
   system.multiply(latest.product, solution);
@@ -20,14 +20,14 @@ void StartVectors::remember(const NodalVector& solution)
   }
 }
 
-NodalVector StartVectors::best(const NodalVector& load) const
+NodalVector StartVectors::best(const NodalVector &load) const
 {
   NodalVector x = system.make_vector();
   if (starts.empty())
   {
     return x;
   }
-  const Start& one = starts[0];
+  const Start &one = starts[0];
   const double a11 = one.vector * one.product, b1 = one.vector * load;
   if (!(a11 > 0.))
   {
@@ -35,7 +35,7 @@ NodalVector StartVectors::best(const NodalVector& load) const
   }
   if (starts.size() > 1)
   {
-    const Start& two = starts[1];
+    const Start &two = starts[1];
     const double a12 = one.vector * two.product, a22 = two.vector * two.product, b2 = two.vector * load;
     const double determinant = a11 * a22 - a12 * a12;
     // Two nearly equal solutions span no plane that rounding leaves intact.
@@ -50,10 +50,10 @@ NodalVector StartVectors::best(const NodalVector& load) const
   return x;
 }
 
-std::vector<const NodalVector*> StartVectors::vectors() const
+std::vector<const NodalVector *> StartVectors::vectors() const
 {
-  std::vector<const NodalVector*> result;
-  for (const Start& start : starts)
+  std::vector<const NodalVector *> result;
+  for (const Start &start : starts)
   {
     result.push_back(&start.vector);
   }

@@ -12,19 +12,19 @@ class StartVectors
 {
 public:
   /// `most`: 1 to start from the last solution, 2 to start from the best combination of the last two.
-  StartVectors(const ElasticSystem& system, std::size_t most);
+  StartVectors(const ElasticSystem &system, std::size_t most);
 
-  /// Vector to start from for a load: zero without history; with two vectors their combination that minimises the energy
-  /// x.Kx/2 - x.load (Fischer, CMAME 163 (1998) 193). Collective.
-  NodalVector best(const NodalVector& load) const;
+  /// Vector to start from for a load: zero without history; with two vectors their combination that minimises the
+  /// energy x.Kx/2 - x.load (Fischer, CMAME 163 (1998) 193). Collective.
+  NodalVector best(const NodalVector &load) const;
 
   /// Takes a solution in as the most recent one. Collective.
-  void remember(const NodalVector& solution);
+  void remember(const NodalVector &solution);
 
   void clear() { starts.clear(); }
 
   /// The vectors, the most recent first.
-  std::vector<const NodalVector*> vectors() const;
+  std::vector<const NodalVector *> vectors() const;
 
 private:
   struct Start
@@ -32,7 +32,7 @@ private:
     NodalVector vector, product; // and the stiffness times it
   };
 
-  const ElasticSystem& system;
+  const ElasticSystem &system;
   std::size_t most;
   std::vector<Start> starts; // most recent first
 };

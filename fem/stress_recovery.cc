@@ -4,8 +4,9 @@ namespace ddfem::fem
 {
 namespace
 {
-/// Value at x of the polynomial that is one at Gauss point k of the unit interval and zero at the others (one or two points).
-double gauss_lagrange(unsigned n, unsigned k, const CubeRule& rule, double x)
+/// Value at x of the polynomial that is one at Gauss point k of the unit interval and zero at the others (one or two
+/// points).
+double gauss_lagrange(unsigned n, unsigned k, const CubeRule &rule, double x)
 {
   if (n == 1)
   {
@@ -16,15 +17,12 @@ double gauss_lagrange(unsigned n, unsigned k, const CubeRule& rule, double x)
 }
 } // namespace
 
-StressRecovery::StressRecovery(const NodalGrid& nodal_grid, double lame_lambda, double shear_modulus,
-                               bool by_patches)
-  : grid(nodal_grid)
-  , lambda(lame_lambda)
-  , mu(shear_modulus)
+StressRecovery::StressRecovery(const NodalGrid &nodal_grid, double lame_lambda, double shear_modulus, bool by_patches)
+    : grid(nodal_grid), lambda(lame_lambda), mu(shear_modulus)
 {
   const CubeRule rule = gauss_cube(grid.degree);
   n_points = static_cast<unsigned>(rule.points.size());
-  for (const auto& point : rule.points)
+  for (const auto &point : rule.points)
   {
     const LagrangeCell shape = lagrange_cell(grid.degree, point);
     gradients.emplace_back(shape.gradient.begin(), shape.gradient.begin() + grid.nodes_per_cell);
@@ -33,11 +31,12 @@ StressRecovery::StressRecovery(const NodalGrid& nodal_grid, double lame_lambda, 
   NodalVector counts(grid.partitioner);
   for (unsigned cell = 0; cell < grid.n_cells(); ++cell)
   {
-    const unsigned* const nodes = grid.nodes_of(cell);
-    for (const auto& point : rule.points)
+    const unsigned *const nodes = grid.nodes_of(cell);
+    for (const auto &point : rule.points)
     {
-      const auto inverse = invert(jacobian(lagrange_cell(grid.degree, point), grid.nodes_per_cell,
-                                           [&](unsigned a) -> const dealii::Point<3>& { return grid.positions[nodes[a]]; }));
+      const auto inverse =
+          invert(jacobian(lagrange_cell(grid.degree, point), grid.nodes_per_cell,
+                          [&](unsigned a) -> const dealii::Point<3> & { return grid.positions[nodes[a]]; }));
       for (unsigned i = 0; i < 9; ++i)
       {
         inverse_jacobians.push_back(inverse[i / 3][i % 3]);
@@ -60,7 +59,7 @@ StressRecovery::StressRecovery(const NodalGrid& nodal_grid, double lame_lambda, 
   }
 }
 
-void StressRecovery::make_extrapolation(const CubeRule& rule)
+void StressRecovery::make_extrapolation(const CubeRule &rule)
 {
   const unsigned n = grid.degree, per_direction = grid.degree + 1;
   for (unsigned a = 0; a < grid.nodes_per_cell; ++a)
@@ -79,13 +78,13 @@ void StressRecovery::make_extrapolation(const CubeRule& rule)
   }
 }
 
-void StressRecovery::stress_at_gauss_points(unsigned cell, const NodalVector& displacement,
-                                            std::array<double, 6>* stress) const
+void StressRecovery::stress_at_gauss_points(unsigned cell, const NodalVector &displacement,
+                                            std::array<double, 6> *stress) const
 {
-  const unsigned* const nodes = grid.nodes_of(cell);
+  const unsigned *const nodes = grid.nodes_of(cell);
   for (unsigned q = 0; q < n_points; ++q)
   {
-    const double* const inverse = &inverse_jacobians[(std::size_t{cell} * n_points + q) * 9];
+    const double *const inverse = &inverse_jacobians[(std::size_t{cell} * n_points + q) * 9];
     double unit[3][3] = {}, h[3][3] = {}; // gradients in unit and in real coordinates
     for (unsigned a = 0; a < grid.nodes_per_cell; ++a)
     {
@@ -111,7 +110,7 @@ void StressRecovery::stress_at_gauss_points(unsigned cell, const NodalVector& di
   }
 }
 
-std::vector<double> StressRecovery::recover(const NodalVector& displacement) const
+std::vector<double> StressRecovery::recover(const NodalVector &displacement) const
 {
   std::vector<std::array<double, 6>> stress(std::size_t{grid.n_cells()} * n_points);
   for (unsigned cell = 0; cell < grid.n_cells(); ++cell)
@@ -130,7 +129,7 @@ std::vector<double> StressRecovery::recover(const NodalVector& displacement) con
   return result;
 }
 
-std::vector<double> StressRecovery::averages(const std::vector<std::array<double, 6>>& stress) const
+std::vector<double> StressRecovery::averages(const std::vector<std::array<double, 6>> &stress) const
 {
   NodalVector normal(grid.partitioner), shear(grid.partitioner);
   for (unsigned cell = 0; cell < grid.n_cells(); ++cell)
@@ -148,7 +147,7 @@ std::vector<double> StressRecovery::averages(const std::vector<std::array<double
       }
     }
   }
-  for (NodalVector* const part : {&normal, &shear})
+  for (NodalVector *const part : {&normal, &shear})
   {
     part->compress(dealii::VectorOperation::add);
     part->update_ghost_values();

@@ -14,7 +14,7 @@ namespace
 {
 constexpr double metre_per_nm = 1e-9, pascal_per_mpa = 1e6;
 
-double von_mises(const double* s)
+double von_mises(const double *s)
 {
   const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
   return std::sqrt(0.5 * (a * a + b * b + c * c) + 3. * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
@@ -24,9 +24,9 @@ double von_mises(const double* s)
 class Surface : public dealii::DataOutInterface<2, 3>
 {
 public:
-  Surface(const NodalGrid& grid, const SurfaceFields& fields)
+  Surface(const NodalGrid &grid, const SurfaceFields &fields)
   {
-    for (const auto& face : grid.faces)
+    for (const auto &face : grid.faces)
     {
       patches.push_back(make_patch(grid, fields, face));
     }
@@ -36,7 +36,7 @@ private:
   using Patch = dealii::DataOutBase::Patch<2, 3>;
   static constexpr unsigned n_rows = 8, n_coordinates = 3;
 
-  Patch make_patch(const NodalGrid& grid, const SurfaceFields& fields, const NodalGrid::Face& face) const
+  Patch make_patch(const NodalGrid &grid, const SurfaceFields &fields, const NodalGrid::Face &face) const
   {
     const auto nodes = face_nodes(grid.degree, face.number);
     const auto n = static_cast<unsigned>(nodes.size());
@@ -67,17 +67,22 @@ private:
     return patch;
   }
 
-  const std::vector<Patch>& get_patches() const override { return patches; }
+  const std::vector<Patch> &get_patches() const override { return patches; }
 
   std::vector<std::string> get_dataset_names() const override
   {
-    return {"displacement_m",            "displacement_m",            "displacement_m",
-            "correction_displacement_m", "correction_displacement_m", "correction_displacement_m",
-            "correction_von_mises_Pa",   "boundary_id"};
+    return {"displacement_m",
+            "displacement_m",
+            "displacement_m",
+            "correction_displacement_m",
+            "correction_displacement_m",
+            "correction_displacement_m",
+            "correction_von_mises_Pa",
+            "boundary_id"};
   }
 
-  std::vector<std::tuple<unsigned, unsigned, std::string,
-                         dealii::DataComponentInterpretation::DataComponentInterpretation>>
+  std::vector<
+      std::tuple<unsigned, unsigned, std::string, dealii::DataComponentInterpretation::DataComponentInterpretation>>
   get_nonscalar_data_ranges() const override
   {
     const auto vector = dealii::DataComponentInterpretation::component_is_part_of_vector;
@@ -88,7 +93,7 @@ private:
 };
 
 /// Writes aside and renames, so that the file is never there by half.
-bool write_file(const std::string& path, const std::function<void(std::ostream&)>& write)
+bool write_file(const std::string &path, const std::function<void(std::ostream &)> &write)
 {
   const std::string temporary = path + ".tmp";
   {
@@ -106,7 +111,7 @@ bool write_file(const std::string& path, const std::function<void(std::ostream&)
   return std::rename(temporary.c_str(), path.c_str()) == 0;
 }
 
-void check_all(bool good, const std::string& path, MPI_Comm communicator)
+void check_all(bool good, const std::string &path, MPI_Comm communicator)
 {
   int all_good = good ? 1 : 0;
   MPI_Allreduce(MPI_IN_PLACE, &all_good, 1, MPI_INT, MPI_MIN, communicator);
@@ -117,8 +122,8 @@ void check_all(bool good, const std::string& path, MPI_Comm communicator)
 }
 } // namespace
 
-std::string write_surface_files(const NodalGrid& grid, const SurfaceFields& fields, const std::string& directory,
-                                const std::string& base_name)
+std::string write_surface_files(const NodalGrid &grid, const SurfaceFields &fields, const std::string &directory,
+                                const std::string &base_name)
 {
   int rank = 0, n_ranks = 1;
   MPI_Comm_rank(grid.communicator, &rank);
@@ -130,10 +135,10 @@ std::string write_surface_files(const NodalGrid& grid, const SurfaceFields& fiel
   }
   const Surface surface(grid, fields);
   const std::string own = directory + "/" + names[static_cast<std::size_t>(rank)];
-  check_all(write_file(own, [&](std::ostream& stream) { surface.write_vtu(stream); }), own, grid.communicator);
+  check_all(write_file(own, [&](std::ostream &stream) { surface.write_vtu(stream); }), own, grid.communicator);
   const std::string record = directory + "/" + base_name + ".pvtu";
   const bool written =
-    rank != 0 || write_file(record, [&](std::ostream& stream) { surface.write_pvtu_record(stream, names); });
+      rank != 0 || write_file(record, [&](std::ostream &stream) { surface.write_pvtu_record(stream, names); });
   check_all(written, record, grid.communicator);
   return record;
 }

@@ -5,8 +5,7 @@
 // Only the name: whoever passes a mesh on need not compile deal.II's mesh headers.
 namespace dealii::parallel
 {
-template <int dim, int spacedim>
-class DistributedTriangulationBase;
+template <int dim, int spacedim> class DistributedTriangulationBase;
 }
 
 namespace ddfem::fem
@@ -17,7 +16,7 @@ using Triangulation = dealii::parallel::DistributedTriangulationBase<3, 3>;
 /// Destroys a mesh where its type is complete (mesh.cc).
 struct TriangulationDeleter
 {
-  void operator()(Triangulation* triangulation) const;
+  void operator()(Triangulation *triangulation) const;
 };
 
 /// Sole owner of a mesh.

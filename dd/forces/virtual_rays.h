@@ -15,7 +15,7 @@ struct VirtualRay
   Vec3 burgers; ///< for the line sense that leaves the origin, nm
 };
 
-/// How the rays of a convex grain are directed; the total field does not depend on it (VALIDATION V5).
+/// How the rays of a convex grain are directed; the total field does not depend on it.
 enum class RayDirection : std::uint8_t
 {
   normal, ///< outward normal of the face

@@ -151,8 +151,11 @@ IntegratorStep StabilisedRungeKutta::advance(Network &network, const VelocityFun
     h *= std::min(0.8, factor);
     next_step = h;
     if (h < smallest)
-      throw std::runtime_error("the time step fell below " + std::to_string(smallest) +
-                               " ns: the motion cannot be integrated to the requested error");
+    {
+      std::ostringstream message;
+      message << "the time step fell below " << smallest << " ns: the motion cannot be integrated to the requested error";
+      throw std::runtime_error(message.str());
+    }
   }
   set_positions(network, start);
   return step;

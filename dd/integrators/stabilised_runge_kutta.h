@@ -32,7 +32,7 @@ struct IntegratorStep
 
 /// Second-order Runge-Kutta-Chebyshev method with error control (Sommeijer, Shampine, Verwer, J. Comput. Appl. Math. 88
 /// (1998) 315, eqs. 2.2-2.9 and 3.1). The line tension makes the equations of motion stiff but symmetric: the stable
-/// step of forward Euler falls with L_min^2, whereas s stages of this explicit method stretch it by 0.65 s^2.
+/// step of forward Euler falls with L_min^2, whereas s stages of this explicit method make it about 0.33 s^2 times longer.
 class StabilisedRungeKutta
 {
 public:
@@ -41,7 +41,8 @@ public:
   {}
 
   /// Advances by at most @p dt_limit ns. @p stiffness: upper bound of the spectral radius of d(velocity)/d(position), 1/ns.
-  /// Throws std::runtime_error if a velocity is not finite or the step shrinks below 1e-12 of max_step or 1e-9 ns.
+  /// Throws std::runtime_error if a velocity is not finite or the step shrinks below the smaller of
+  /// 1e-12 of max_step and 1e-9 ns.
   IntegratorStep advance(Network &network, const VelocityFunction &velocity, double stiffness, double dt_limit);
 
   double suggested_step() const { return next_step; }

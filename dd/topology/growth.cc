@@ -59,7 +59,8 @@ SweptArea grown_area(const Network &network, const GrainShape *shape, const RayD
     if (network.constraint(first) == NodeConstraint::surface && shape)
     {
       const Vec3 &x1 = network.position(chain.back());
-      area.add_opening(x0, ray_direction(*shape, rule, x0), x1, ray_direction(*shape, rule, x1), b, p);
+      // The fan is closed by the chord x1 -> x0; what remains is x0 -> x1 -> infinity -> x0.
+      area.add_opening(x1, ray_direction(*shape, rule, x1), x0, ray_direction(*shape, rule, x0), b, p);
     }
   };
   for (const NodeIndex i : network.nodes()) // open lines first: they must be followed from an end

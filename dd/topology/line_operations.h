@@ -28,6 +28,6 @@ void remove_node(TopologyContext &context, NodeIndex i);
 /// True if the two arms of node @p i are one line: degree two, free, same Burgers vector and plane.
 bool is_discretisation_node(const Network &network, NodeIndex i);
 
-/// Erases nodes of @p candidates that have no arms left and are not pinned.
+/// Erases node @p i if it has no arms left and is not pinned.
 void erase_if_orphan(Network &network, NodeIndex i);
 } // namespace ddfem

@@ -136,27 +136,26 @@ std::optional<Split> best_split(const Network &n, const NodeIndex i, const Split
   return best;
 }
 
-/// Moves a freshly split node by @p dx, unless that would take it out of the grain.
-void set_apart(TopologyContext &c, const NodeIndex i, const Vec3 &dx)
+bool is_inside(const TopologyContext &c, const Vec3 &x)
 {
-  const Vec3 x = c.network.position(i) + dx;
-  if (!c.shape || c.shape->signed_distance(x) <= 0)
-    move_node(c, i, x);
+  return !c.shape || c.shape->signed_distance(x) <= 0;
 }
 
 void perform(TopologyContext &c, const NodeIndex i, const Split &split, const double separation)
 {
   Network &n        = c.network;
   const Vec3 b      = split.first.burgers;
+  const double half = 0.5 * std::min({separation, split.first.shortest, split.second.shortest});
+  const Vec3 first  = n.position(i) + half * (split.first.projector * split.direction);
+  const Vec3 second = n.position(i) - half * (split.second.projector * split.direction);
+  if (!is_inside(c, first) || !is_inside(c, second) || (first - second).norm() < 0.1 * half)
+    return;
   const NodeIndex j = detach_arms(c, i, split.second.arms, NodeConstraint::free);
-  const Mat3 p1 = split.first.projector, p2 = split.second.projector;
-  const double half =
-    0.5 * std::min({separation, split.first.shortest, split.second.shortest});
-  set_apart(c, i, half * (p1 * split.direction));
-  set_apart(c, j, -half * (p2 * split.direction));
+  move_node(c, i, first);
+  move_node(c, j, second);
   // Balance at node i: the arms leave with b, so the junction, leaving i towards j, carries -b.
   if (b.norm() > 1e-9)
-    n.insert(Segment{i, j, -b, c.product_plane(n, split.direction, b, n.position(i))});
+    n.insert(Segment{i, j, -b, c.product_plane(n, (second - first).normalized(), b, first)});
   ++c.counts.splits;
 }
 } // namespace

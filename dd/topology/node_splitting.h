@@ -1,4 +1,4 @@
-// Dissociation of nodes with four or more arms.
+// Dissociation of nodes with many arms.
 #pragma once
 
 #include "dd/forces/nodal_forces.h"
@@ -20,7 +20,7 @@ struct SplittingModel
 /// Nodal forces for the present network, computed only when some node can split.
 using ForceFunction = std::function<NodalForces(const Network &)>;
 
-/// Splits every free node with four or more arms into the two nodes, each with two arms at least, that dissipate the most
+/// Splits every free node with four to eight arms into the two nodes, each with two arms at least, that dissipate the most
 /// power sum F.V (Bulatov & Cai, Computer Simulations of Dislocations, 2006, section 10.4), if that is more than the
 /// unsplit node dissipates and the two move apart. Where the arms of each part balance, nothing joins the parts: lines
 /// that met and annihilated reconnect this way. Otherwise a junction segment with the remaining Burgers vector joins them,

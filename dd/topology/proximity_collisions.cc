@@ -151,6 +151,9 @@ bool merge_at_contact(TopologyContext &c, const SegmentIndex s1, const SegmentIn
   // A line that comes near the end of another at the surface reaches the surface by itself; two pinned nodes stay apart.
   if ((both_held && !both_on_surface) || (firmness(n, i) == 1 && firmness(n, j) == 0))
     return false;
+  // Surface nodes meet only to annihilate: a surface node is the end of one line.
+  if (both_on_surface && (ray_burgers(n, i) + ray_burgers(n, j)).norm() > 1e-9)
+    return false;
   const Vec3 xi = n.position(i), xj = xi + n.minimum_image(n.position(j) - xi);
   const auto x = meeting_point(c, i, j, xj, firmness(n, i) > 0 ? xi : Vec3(0.5 * (xi + xj)));
   if (!x || (firmness(n, i) > 0 && (*x - xi).norm() > 1e-6 * c.settings.collision_radius))
@@ -161,7 +164,7 @@ bool merge_at_contact(TopologyContext &c, const SegmentIndex s1, const SegmentIn
   ++c.counts.collisions;
   c.remaining[i.value].setZero();
   merge_nodes(c, i, j);
-  if (n.contains(i) && both_on_surface && ray_burgers(n, i).norm() < 1e-9)
+  if (n.contains(i) && both_on_surface)
     n.set_constraint(i, NodeConstraint::free);
   return true;
 }

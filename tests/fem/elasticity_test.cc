@@ -13,16 +13,17 @@ struct Case
   MeshParameters mesh;
   dealii::types::boundary_id bottom, top;
   unsigned degree;
-  const char* name;
+  const char *name;
 };
 
-void PrintTo(const Case& c, std::ostream* stream)
+void PrintTo(const Case &c, std::ostream *stream)
 {
   *stream << c.name << " degree " << c.degree;
 }
 
 class Bar : public testing::TestWithParam<Case>
-{};
+{
+};
 
 const std::vector<Case> bars = {{box({300., 200., 700.}, {3, 2, 4}, {-50., 20., 1000.}), 4, 5, 1, "box"},
                                 {box({300., 200., 700.}, {3, 2, 4}, {-50., 20., 1000.}), 4, 5, 2, "box"},
@@ -36,14 +37,17 @@ const std::vector<Case> bars = {{box({300., 200., 700.}, {3, 2, 4}, {-50., 20., 
 
 TEST_P(Bar, PulledBetweenFrictionlessPlatensIsInUniaxialStress)
 {
-  const auto& [parameters, bottom, top, degree, name] = GetParam();
+  const auto &[parameters, bottom, top, degree, name] = GetParam();
   const auto mesh = make_mesh(MPI_COMM_WORLD, parameters);
   const auto [low, high] = bounding_box(*mesh);
-  ElasticProblem problem(*mesh, accurate(degree), copper, {{bottom, {false, false, true}}, {top, {false, false, true}}});
+  ElasticProblem problem(*mesh, accurate(degree), copper,
+                         {{bottom, {false, false, true}}, {top, {false, false, true}}});
   EXPECT_EQ(problem.n_free_rigid_modes(), 3u);
   const double length = high[2] - low[2];
-  const auto info = problem.solve(prescribe(problem, [&, z0 = low[2]](const Point& x)
-                                            { return Vector({0., 0., strain * (x[2] - z0)}); }));
+  const auto info = problem.solve(prescribe(problem,
+                                            [&, z0 = low[2]](const Point &x) {
+                                              return Vector({0., 0., strain * (x[2] - z0)});
+                                            }));
   EXPECT_LT(info.final_residual, 1e-12);
   const double sigma = youngs_modulus(copper) * strain, force = sigma * problem.boundary_area(top);
   EXPECT_NEAR(problem.reaction(top)[2] / force, 1., 1e-9);
@@ -72,32 +76,38 @@ TEST(Elasticity, QuadraticSolutionsAreExactWithQuadraticElements)
   const double k = 1e-6, nu = copper.nu;
   struct Solution
   {
-    const char* name;
-    std::function<Vector(const Point&)> displacement;
-    std::function<dealii::Tensor<2, 3>(const Point&)> gradient;
+    const char *name;
+    std::function<Vector(const Point &)> displacement;
+    std::function<dealii::Tensor<2, 3>(const Point &)> gradient;
   };
   const std::vector<Solution> solutions = {
-    {"pure bending",
-     [=](const Point& x)
-     { return k * Vector({x[0] * x[2], -nu * x[1] * x[2], -0.5 * (x[0] * x[0] + nu * (x[2] * x[2] - x[1] * x[1]))}); },
-     [=](const Point& x)
-     {
-       return k * dealii::Tensor<2, 3>({{x[2], 0., x[0]}, {0., -nu * x[2], -nu * x[1]}, {-x[0], nu * x[1], -nu * x[2]}});
-     }},
-    {"torsion of a round bar", [=](const Point& x) { return k * Vector({-x[1] * x[2], x[0] * x[2], 0.}); },
-     [=](const Point& x) { return k * dealii::Tensor<2, 3>({{0., -x[2], -x[1]}, {x[2], 0., x[0]}, {0., 0., 0.}}); }}};
-  for (const auto& mesh_parameters : {box({300., 200., 400.}, {2, 2, 3}, {-120., 40., 10.}), mesh_file("bar.msh")})
+      {"pure bending",
+       [=](const Point &x) {
+         return k * Vector({x[0] * x[2], -nu * x[1] * x[2], -0.5 * (x[0] * x[0] + nu * (x[2] * x[2] - x[1] * x[1]))});
+       },
+       [=](const Point &x) {
+         return k *
+                dealii::Tensor<2, 3>({{x[2], 0., x[0]}, {0., -nu * x[2], -nu * x[1]}, {-x[0], nu * x[1], -nu * x[2]}});
+       }},
+      {"torsion of a round bar",
+       [=](const Point &x) {
+         return k * Vector({-x[1] * x[2], x[0] * x[2], 0.});
+       },
+       [=](const Point &x) {
+         return k * dealii::Tensor<2, 3>({{0., -x[2], -x[1]}, {x[2], 0., x[0]}, {0., 0., 0.}});
+       }}};
+  for (const auto &mesh_parameters : {box({300., 200., 400.}, {2, 2, 3}, {-120., 40., 10.}), mesh_file("bar.msh")})
   {
     const auto mesh = make_mesh(MPI_COMM_WORLD, mesh_parameters);
     std::vector<DisplacementCondition> conditions;
-    for (const auto& entry : boundary_areas(*mesh))
+    for (const auto &entry : boundary_areas(*mesh))
     {
       conditions.push_back({entry.first, {true, true, true}});
     }
     ElasticProblem problem(*mesh, accurate(2), copper, conditions);
     EXPECT_EQ(problem.n_free_rigid_modes(), 0u);
     const auto [low, high] = bounding_box(*mesh);
-    for (const auto& solution : solutions)
+    for (const auto &solution : solutions)
     {
       problem.solve(prescribe(problem, solution.displacement));
       const auto points = scattered_points(low, high, 60);
@@ -107,7 +117,7 @@ TEST(Elasticity, QuadraticSolutionsAreExactWithQuadraticElements)
       for (std::size_t i = 0; i < points.size(); ++i)
       {
         EXPECT_LT((displacements[i] - solution.displacement(points[i])).norm(), 1e-10 * k * high.norm_square())
-          << solution.name;
+            << solution.name;
         EXPECT_LT((stresses[i] - hooke(copper, solution.gradient(points[i]))).norm(), 1e-8 * scale) << solution.name;
       }
     }
@@ -122,12 +132,11 @@ TEST(Elasticity, CantileverBendsLikeATimoshenkoBeam)
   ElasticProblem problem(*mesh, {}, copper, {{0, {true, true, true}}});
   const double force = 1e5;
   problem.add_uniform_traction(1, Vector({0., 0., force / (width * depth)}));
-  problem.solve(prescribe(problem, [](const Point&) { return Vector(); }));
+  problem.solve(prescribe(problem, [](const Point &) { return Vector(); }));
   const double inertia = width * std::pow(depth, 3) / 12., e = youngs_modulus(copper);
   const double kappa = 10. * (1. + nu) / (12. + 11. * nu);
   const double bending = force * std::pow(length, 3) / (3. * e * inertia);
-  const double expected =
-    bending * (1. + 3. * e * inertia / (kappa * width * depth * copper.mu * length * length));
+  const double expected = bending * (1. + 3. * e * inertia / (kappa * width * depth * copper.mu * length * length));
   const double tip = problem.displacement_at({Point(length, width / 2., depth / 2.)})[0][2];
   EXPECT_NEAR(tip / expected, 1., 0.01);
   EXPECT_NEAR(problem.reaction(0)[2] / force, -1., 1e-6);
@@ -138,9 +147,9 @@ TEST(Elasticity, UnloadedGrainIsExactlyAtRest)
 {
   const auto mesh = make_mesh(MPI_COMM_WORLD, box({100., 100., 100.}, {2, 2, 2}));
   ElasticProblem problem(*mesh, {}, copper, {});
-  const auto info = problem.solve(prescribe(problem, [](const Point&) { return Vector({1., 2., 3.}); }));
+  const auto info = problem.solve(prescribe(problem, [](const Point &) { return Vector({1., 2., 3.}); }));
   EXPECT_EQ(info.iterations, 0u);
-  for (const auto& u : problem.boundary_displacements())
+  for (const auto &u : problem.boundary_displacements())
   {
     EXPECT_EQ(u.norm(), 0.);
   }
@@ -153,7 +162,7 @@ TEST(Elasticity, ReactionsOfClampedEndsBalanceTheTractions)
   const PointForce force{Point(260., 90., 150.), Vector({3e4, -2e4, 1e4}), copper};
   problem.set_tractions(field_of(force));
   problem.add_uniform_traction(1, Vector({5., 6., 7.}));
-  problem.solve(prescribe(problem, [](const Point&) { return Vector(); }));
+  problem.solve(prescribe(problem, [](const Point &) { return Vector(); }));
   // Only the uniform traction is not in equilibrium by itself.
   const Vector balance = problem.reaction(4) + problem.reaction(5) + 200. * 400. * Vector({5., 6., 7.});
   EXPECT_LT(balance.norm(), 1e-6 * problem.reaction(4).norm());
@@ -166,17 +175,17 @@ TEST(Elasticity, ReactionIsThatOfTheTotalField)
   const auto mesh = make_mesh(MPI_COMM_WORLD, box({200., 100., 400.}, {2, 2, 4}));
   ElasticProblem problem(*mesh, accurate(2), copper, {{4, {false, false, true}}, {5, {false, false, true}}});
   const FunctionField field(
-    [](const Point&)
-    {
-      Stress s;
-      s[2][2] = 70.;
-      return s;
-    });
+      [](const Point &)
+      {
+        Stress s;
+        s[2][2] = 70.;
+        return s;
+      });
   problem.set_tractions(field);
-  problem.solve(prescribe(problem, [](const Point&) { return Vector(); }));
+  problem.solve(prescribe(problem, [](const Point &) { return Vector(); }));
   EXPECT_NEAR(problem.reaction(5)[2], 70. * 200. * 100., 1e-3);
   EXPECT_NEAR(problem.reaction(4)[2], -70. * 200. * 100., 1e-3);
-  for (const auto& u : problem.boundary_displacements())
+  for (const auto &u : problem.boundary_displacements())
   {
     EXPECT_LT(u.norm(), 1e-10);
   }
@@ -185,7 +194,7 @@ TEST(Elasticity, ReactionIsThatOfTheTotalField)
 namespace
 {
 /// Linear stress in equilibrium about c: bending, torsion and a constant part.
-Stress linear_stress(const Point& x, const Point& c)
+Stress linear_stress(const Point &x, const Point &c)
 {
   const Vector r = x - c;
   Stress s;
@@ -200,17 +209,16 @@ Stress linear_stress(const Point& x, const Point& c)
 TEST(Elasticity, FreeGrainDeformsWithoutRigidMotionWhereverItIs)
 {
   std::vector<Vector> reference;
-  for (const auto& origin : {std::array<double, 3>{0., 0., 0.}, std::array<double, 3>{1e5, -3e5, 7e4}})
+  for (const auto &origin : {std::array<double, 3>{0., 0., 0.}, std::array<double, 3>{1e5, -3e5, 7e4}})
   {
     const auto mesh = make_mesh(MPI_COMM_WORLD, box({200., 300., 400.}, {2, 3, 4}, origin));
     ElasticProblem problem(*mesh, accurate(2), copper, {});
     EXPECT_EQ(problem.n_free_rigid_modes(), 6u);
     const Point centre = problem.centre();
-    const auto summary =
-      problem.set_tractions(FunctionField([&](const Point& x) { return linear_stress(x, centre); }));
+    const auto summary = problem.set_tractions(FunctionField([&](const Point &x) { return linear_stress(x, centre); }));
     EXPECT_LT(summary.force.norm(), 1e-8 * summary.absolute_force);
     EXPECT_LT(summary.moment.norm(), 1e-8 * summary.absolute_moment);
-    const auto info = problem.solve(prescribe(problem, [](const Point&) { return Vector(); }));
+    const auto info = problem.solve(prescribe(problem, [](const Point &) { return Vector(); }));
     EXPECT_LT(info.unbalanced_load, 1e-8);
     const Point low(origin[0], origin[1], origin[2]), high = low + Vector({200., 300., 400.});
     const auto points = scattered_points(low, high, 40);
@@ -225,7 +233,8 @@ TEST(Elasticity, FreeGrainDeformsWithoutRigidMotionWhereverItIs)
     {
       const std::array<double, 3> place = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)};
       const unsigned cell = k / 27, q = k % 27;
-      gauss.push_back(low + 100. * Vector({cell % 2 + place[q % 3], cell / 2 % 3 + place[q / 3 % 3], cell / 6 + place[q / 9]}));
+      gauss.push_back(
+          low + 100. * Vector({cell % 2 + place[q % 3], cell / 2 % 3 + place[q / 3 % 3], cell / 6 + place[q / 9]}));
     }
     const auto displacements = problem.displacement_at(gauss);
     Vector mean, spin;
@@ -238,7 +247,7 @@ TEST(Elasticity, FreeGrainDeformsWithoutRigidMotionWhereverItIs)
       spin += w * cross_product_3d(gauss[k] - centre, displacements[k]);
     }
     double largest = 0.;
-    for (const auto& u : displacements)
+    for (const auto &u : displacements)
     {
       largest = std::max(largest, u.norm());
     }
@@ -259,10 +268,10 @@ TEST(Elasticity, WarmStartsSaveIterationsAndRestartsRepeatBits)
 {
   const auto mesh = make_mesh(MPI_COMM_WORLD, box({200., 200., 400.}, {3, 3, 6}));
   const std::vector<DisplacementCondition> conditions = {{4, {false, false, true}}, {5, {false, false, true}}};
-  const auto load = [](ElasticProblem& problem, double time)
+  const auto load = [](ElasticProblem &problem, double time)
   {
     problem.set_tractions(field_of(PointForce{Point(100. + time, 260., 150.), Vector({3e4, -2e4, 1e4}), copper}));
-    return problem.solve(prescribe(problem, [](const Point&) { return Vector(); }));
+    return problem.solve(prescribe(problem, [](const Point &) { return Vector(); }));
   };
   ElasticProblem first(*mesh, {}, copper, conditions);
   const auto cold = load(first, 0.);
@@ -281,11 +290,11 @@ TEST(Elasticity, SolutionsCanBeSuperposed)
 {
   const auto mesh = make_mesh(MPI_COMM_WORLD, box({200., 200., 400.}, {2, 2, 4}));
   ElasticProblem problem(*mesh, accurate(2), copper, {{4, {true, true, true}}, {5, {true, true, true}}});
-  const auto pull = [](const Point& x) { return Vector({0., 0., 1e-3 * x[2]}); };
+  const auto pull = [](const Point &x) { return Vector({0., 0., 1e-3 * x[2]}); };
   problem.solve(prescribe(problem, pull));
   const double force = problem.reaction(5)[2];
   auto values = problem.solution();
-  for (double& value : values)
+  for (double &value : values)
   {
     value *= -2.;
   }
@@ -313,7 +322,7 @@ TEST(Elasticity, MistakesAreRefused)
   EXPECT_THROW(problem.stress_at({Point(50., 50., 103.)}), std::runtime_error);
   EXPECT_THROW(problem.stress_at({Point(50., 50., std::nan(""))}), std::runtime_error);
   EXPECT_NO_THROW(problem.stress_at({Point(50., 50., 100.5)}));
-  problem.set_tractions(FunctionField([](const Point&) { return std::nan("") * dealii::unit_symmetric_tensor<3>(); }));
-  EXPECT_THROW(problem.solve(prescribe(problem, [](const Point&) { return Vector(); })), std::runtime_error);
+  problem.set_tractions(FunctionField([](const Point &) { return std::nan("") * dealii::unit_symmetric_tensor<3>(); }));
+  EXPECT_THROW(problem.solve(prescribe(problem, [](const Point &) { return Vector(); })), std::runtime_error);
 }
 } // namespace ddfem::fem::test

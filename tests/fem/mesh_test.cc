@@ -13,21 +13,20 @@ namespace
 constexpr double pi = std::numbers::pi;
 
 /// The message of the exception, or nothing.
-template <typename Exception, typename Function>
-std::string message_of(Function&& function)
+template <typename Exception, typename Function> std::string message_of(Function &&function)
 {
   try
   {
     function();
   }
-  catch (const Exception& error)
+  catch (const Exception &error)
   {
     return error.what();
   }
   return "";
 }
 
-std::string scratch_file(const std::string& content)
+std::string scratch_file(const std::string &content)
 {
   static int counter = 0;
   const auto path = std::filesystem::temp_directory_path() /
@@ -36,13 +35,13 @@ std::string scratch_file(const std::string& content)
   return path.string();
 }
 
-std::string text_of(const std::string& path)
+std::string text_of(const std::string &path)
 {
   std::ifstream stream(path);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::string error_of_file(const std::string& content)
+std::string error_of_file(const std::string &content)
 {
   MeshParameters parameters;
   parameters.shape = MeshParameters::Shape::gmsh;
@@ -55,14 +54,14 @@ std::string error_of_file(const std::string& content)
 }
 
 /// Area vectors of a closed surface cancel; a third of the flux of x through it is the volume.
-std::pair<Vector, double> closure(const std::vector<BoundaryFacet>& facets)
+std::pair<Vector, double> closure(const std::vector<BoundaryFacet> &facets)
 {
   Vector area;
   double volume = 0.;
-  for (const auto& facet : facets)
+  for (const auto &facet : facets)
   {
-    const auto& v = facet.vertices;
-    for (const auto& [a, b, c] : {std::array<Point, 3>{v[0], v[1], v[2]}, std::array<Point, 3>{v[0], v[2], v[3]}})
+    const auto &v = facet.vertices;
+    for (const auto &[a, b, c] : {std::array<Point, 3>{v[0], v[1], v[2]}, std::array<Point, 3>{v[0], v[2], v[3]}})
     {
       const Vector normal = 0.5 * cross_product_3d(b - a, c - a);
       area += normal;
@@ -85,10 +84,10 @@ TEST(Mesh, BoxHasItsPlaceSizeAndBoundaryIds)
   EXPECT_NEAR(areas.at(0), 1.5e5, 1e-6);
   EXPECT_NEAR(areas.at(3), 1e5, 1e-6);
   EXPECT_NEAR(areas.at(5), 6e4, 1e-6);
-  for (const auto& facet : boundary_facets(*mesh))
+  for (const auto &facet : boundary_facets(*mesh))
   {
     const std::array<double, 6> planes = {-100., 100., 50., 350., 1000., 1500.};
-    for (const auto& vertex : facet.vertices)
+    for (const auto &vertex : facet.vertices)
     {
       EXPECT_NEAR(vertex[facet.boundary / 2], planes[facet.boundary], 1e-9);
     }
@@ -97,7 +96,8 @@ TEST(Mesh, BoxHasItsPlaceSizeAndBoundaryIds)
 
 TEST(Mesh, BoundaryFacetsFormAClosedSurfaceSeenFromOutside)
 {
-  for (const auto& parameters : {box({200., 300., 500.}, {2, 3, 5}), cylinder(100., 300., 6, 4), mesh_file("pillar.msh")})
+  for (const auto &parameters :
+       {box({200., 300., 500.}, {2, 3, 5}), cylinder(100., 300., 6, 4), mesh_file("pillar.msh")})
   {
     const auto mesh = make_mesh(MPI_COMM_WORLD, parameters);
     const auto facets = boundary_facets(*mesh);
@@ -138,9 +138,9 @@ TEST(Mesh, RefinedCylinderStaysRoundWhereverItStands)
   parameters.origin = {1000., -500., 70.};
   parameters.refinements = 1;
   const auto mesh = make_mesh(MPI_COMM_WORLD, parameters);
-  for (const auto& facet : boundary_facets(*mesh))
+  for (const auto &facet : boundary_facets(*mesh))
   {
-    for (const auto& x : facet.vertices)
+    for (const auto &x : facet.vertices)
     {
       if (facet.boundary == 0)
       {
@@ -181,7 +181,7 @@ TEST(Mesh, BoundaryNamesAreKnownAndMistakesAreAnswered)
 
 TEST(Mesh, SenselessParametersAreRefused)
 {
-  const auto error = [](const MeshParameters& p)
+  const auto error = [](const MeshParameters &p)
   { return message_of<std::invalid_argument>([&] { make_mesh(MPI_COMM_SELF, p); }); };
   EXPECT_NE(error(box({1., -2., 1.}, {1, 1, 1})).find("-2 nm"), std::string::npos);
   EXPECT_NE(error(box({1., 1., 1.}, {1, 0, 1})).find("at least one cell"), std::string::npos);
@@ -200,8 +200,9 @@ TEST(Mesh, UnusableFilesAreNamedWithTheReason)
   EXPECT_NE(error_of_file("$MeshFormat\n4.1 1 8\n$EndMeshFormat\n").find("binary"), std::string::npos);
   EXPECT_NE(error_of_file(bar.substr(0, bar.size() / 2)).find("mesh file"), std::string::npos);
 
-  const std::string tetrahedron = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
-                                  "$EndNodes\n$Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n";
+  const std::string tetrahedron =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+      "$EndNodes\n$Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n";
   EXPECT_NE(error_of_file(tetrahedron).find("tetrahedra"), std::string::npos);
 
   // The same pillar without the group of its top.

@@ -2,7 +2,6 @@
 #include "support.h"
 
 #include <deal.II/distributed/tria_base.h>
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -13,10 +12,10 @@ namespace ddfem::fem::test
 {
 namespace
 {
-std::vector<DisplacementCondition> everywhere(const Triangulation& mesh)
+std::vector<DisplacementCondition> everywhere(const Triangulation &mesh)
 {
   std::vector<DisplacementCondition> conditions;
-  for (const auto& entry : boundary_areas(mesh))
+  for (const auto &entry : boundary_areas(mesh))
   {
     conditions.push_back({entry.first, {true, true, true}});
   }
@@ -24,7 +23,7 @@ std::vector<DisplacementCondition> everywhere(const Triangulation& mesh)
 }
 
 /// Stress from central differences of the displacement, which within a quadratic cell are its own gradient.
-Stress raw_stress(const ElasticProblem& problem, const Point& x)
+Stress raw_stress(const ElasticProblem &problem, const Point &x)
 {
   constexpr double step = 1e-3;
   std::vector<Point> points;
@@ -53,8 +52,8 @@ struct Errors
   double recovered = 0., raw = 0.;
 };
 
-/// Root-mean-square errors of the stress inside a box whose surface follows a point force outside. Very near the surface
-/// nodal averages rule and the order is that of the gradient.
+/// Root-mean-square errors of the stress inside a box whose surface follows a point force outside. Very near the
+/// surface nodal averages rule and the order is that of the gradient.
 Errors stress_errors(unsigned degree, unsigned n, ElasticProblem::Recovery method)
 {
   const auto mesh = make_mesh(MPI_COMM_WORLD, box({100., 100., 100.}, {n, n, n}));
@@ -62,7 +61,7 @@ Errors stress_errors(unsigned degree, unsigned n, ElasticProblem::Recovery metho
   parameters.recovery = method;
   ElasticProblem problem(*mesh, parameters, copper, everywhere(*mesh));
   const PointForce force{Point(50., 40., 180.), Vector({3e5, -2e5, 4e5}), copper};
-  problem.solve(prescribe(problem, [&](const Point& x) { return force.displacement(x); }));
+  problem.solve(prescribe(problem, [&](const Point &x) { return force.displacement(x); }));
   const auto points = scattered_points(Point(6., 6., 6.), Point(94., 94., 94.), 200);
   const auto recovered = problem.stress_at(points);
   Errors errors;
@@ -105,7 +104,7 @@ TEST(Stress, IsContinuousAcrossCells)
   const auto mesh = make_mesh(MPI_COMM_WORLD, cylinder(100., 300., 5, 4));
   ElasticProblem problem(*mesh, {}, copper, everywhere(*mesh));
   const PointForce force{Point(50., 140., 180.), Vector({3e5, -2e5, 4e5}), copper};
-  problem.solve(prescribe(problem, [&](const Point& x) { return force.displacement(x); }));
+  problem.solve(prescribe(problem, [&](const Point &x) { return force.displacement(x); }));
   // A ray through many cells: jumps would show as differences that do not shrink with the distance.
   const Point start(-60., -50., 10.);
   const Vector ray({1.1, 0.9, 2.7});
@@ -129,15 +128,15 @@ TEST(Stress, IsTheSameOnAllRanksAndDoesNotDependOnEarlierCalls)
   const auto mesh = make_mesh(MPI_COMM_WORLD, cylinder(100., 300., 5, 4));
   ElasticProblem problem(*mesh, {}, copper, everywhere(*mesh));
   const PointForce force{Point(50., 140., 180.), Vector({3e5, -2e5, 4e5}), copper};
-  problem.solve(prescribe(problem, [&](const Point& x) { return force.displacement(x); }));
+  problem.solve(prescribe(problem, [&](const Point &x) { return force.displacement(x); }));
   auto points = scattered_points(Point(-70., -70., 0.), Point(70., 70., 300.), 500);
-  for (const auto& facet : boundary_facets(*mesh))
+  for (const auto &facet : boundary_facets(*mesh))
   {
     points.push_back(facet.vertices[0]);
   }
   const auto fresh = problem.stress_at(points);
   auto shifted = points;
-  for (auto& x : shifted)
+  for (auto &x : shifted)
   {
     x[2] = std::min(x[2] + 5., 300.);
   }
@@ -174,7 +173,7 @@ TEST(Stress, DoesNotDependOnTheNumberOfRanks)
       const auto mesh = make_mesh(k == 0 ? MPI_COMM_SELF : MPI_COMM_WORLD, cylinder(100., 300., 5, 4));
       ElasticProblem problem(*mesh, accurate(degree), copper, conditions);
       problem.set_tractions(field_of(force));
-      problem.solve(prescribe(problem, [&](const Point& x) { return Vector({0., 0., 1e-3 * x[2]}); }));
+      problem.solve(prescribe(problem, [&](const Point &x) { return Vector({0., 0., 1e-3 * x[2]}); }));
       stresses[k] = problem.stress_at(points);
       displacements[k] = problem.displacement_at(points);
       reactions[k] = problem.reaction(2);
@@ -195,7 +194,7 @@ TEST(Stress, BoundaryPointsAreEachOwnedOnceAndOnTheirBoundaries)
   const std::array<double, 6> planes = {0., 300., 0., 200., 0., 400.};
   for (std::size_t i = 0; i < problem.boundary_points().size(); ++i)
   {
-    const Point& x = problem.boundary_points()[i];
+    const Point &x = problem.boundary_points()[i];
     std::vector<dealii::types::boundary_id> expected;
     for (unsigned id = 0; id < 6; ++id)
     {
@@ -213,6 +212,77 @@ TEST(Stress, BoundaryPointsAreEachOwnedOnceAndOnTheirBoundaries)
   EXPECT_EQ(count, 7ul * 5 * 9 - 5ul * 3 * 7);
 }
 
+TEST(Stress, NodesOnAReentrantEdgeKnowTheBoundariesOfOtherRanks)
+{
+  // Three cubes in an L, surfaces 1 (top and bottom), 2 (the two faces that meet in the re-entrant edge), 3 (the rest).
+  // On that edge a cell of the corner cube has no boundary face, though its nodes lie on surface 2.
+  const auto path = std::filesystem::temp_directory_path() / ("ddfem_l_" + std::to_string(getpid()) + ".msh");
+  std::ofstream(path) << R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+16
+1 0 0 0
+2 1 0 0
+3 2 0 0
+4 0 1 0
+5 1 1 0
+6 2 1 0
+7 0 2 0
+8 1 2 0
+9 0 0 1
+10 1 0 1
+11 2 0 1
+12 0 1 1
+13 1 1 1
+14 2 1 1
+15 0 2 1
+16 1 2 1
+$EndNodes
+$Elements
+17
+1 3 2 1 1 1 2 5 4
+2 3 2 1 1 2 3 6 5
+3 3 2 1 1 4 5 8 7
+4 3 2 1 1 9 10 13 12
+5 3 2 1 1 10 11 14 13
+6 3 2 1 1 12 13 16 15
+7 3 2 2 1 5 6 14 13
+8 3 2 2 1 5 8 16 13
+9 3 2 3 1 1 2 10 9
+10 3 2 3 1 2 3 11 10
+11 3 2 3 1 3 6 14 11
+12 3 2 3 1 7 8 16 15
+13 3 2 3 1 4 7 15 12
+14 3 2 3 1 1 4 12 9
+15 5 2 1 1 1 2 5 4 9 10 13 12
+16 5 2 1 1 2 3 6 5 10 11 14 13
+17 5 2 1 1 4 5 8 7 12 13 16 15
+$EndElements
+)";
+  MeshParameters parameters;
+  parameters.shape = MeshParameters::Shape::gmsh;
+  parameters.file = path.string();
+  parameters.length_unit_nm = 100.;
+  parameters.refinements = 1;
+  const auto mesh = make_mesh(MPI_COMM_WORLD, parameters);
+  ElasticProblem problem(*mesh, {}, copper, {{2, {true, true, true}}});
+  int n_on_edge = 0;
+  for (std::size_t i = 0; i < problem.boundary_points().size(); ++i)
+  {
+    const Point &x = problem.boundary_points()[i];
+    if (std::abs(x[0] - 100.) < 1e-9 && std::abs(x[1] - 100.) < 1e-9)
+    {
+      ++n_on_edge;
+      EXPECT_EQ(problem.boundary_ids()[i].back(), 2u) << x;
+      EXPECT_TRUE(problem.prescribed_components()[i][0]) << x;
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &n_on_edge, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  EXPECT_EQ(n_on_edge, 5);
+  std::filesystem::remove(path);
+}
+
 TEST(Stress, SurfaceIsWrittenWholeAndInMetres)
 {
   int rank = 0, n_ranks = 1, id = getpid();
@@ -223,11 +293,12 @@ TEST(Stress, SurfaceIsWrittenWholeAndInMetres)
   std::filesystem::create_directories(directory);
   const auto mesh = make_mesh(MPI_COMM_WORLD, box({300., 200., 400.}, {3, 2, 4}));
   ElasticProblem problem(*mesh, {}, copper, {{4, {true, true, true}}, {5, {true, true, true}}});
-  problem.solve(prescribe(problem, [](const Point& x) { return Vector({0., 0., 1e-3 * x[2]}); }));
-  const auto path = problem.write_surface(directory.string(), "grain_000", prescribe(problem, [](const Point&) { return Vector(); }));
+  problem.solve(prescribe(problem, [](const Point &x) { return Vector({0., 0., 1e-3 * x[2]}); }));
+  const auto path = problem.write_surface(directory.string(), "grain_000",
+                                          prescribe(problem, [](const Point &) { return Vector(); }));
   EXPECT_EQ(path, (directory / "grain_000.pvtu").string());
   std::size_t n_files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(directory))
+  for (const auto &entry : std::filesystem::directory_iterator(directory))
   {
     ++n_files;
     EXPECT_NE(entry.path().extension(), ".tmp");
@@ -235,11 +306,12 @@ TEST(Stress, SurfaceIsWrittenWholeAndInMetres)
   EXPECT_EQ(n_files, static_cast<std::size_t>(n_ranks) + 1);
   std::ifstream stream(path);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  for (const char* const name : {"displacement_m", "correction_displacement_m", "correction_von_mises_Pa", "boundary_id"})
+  for (const char *const name :
+       {"displacement_m", "correction_displacement_m", "correction_von_mises_Pa", "boundary_id"})
   {
     EXPECT_NE(text.find(name), std::string::npos) << name;
   }
-  EXPECT_THROW(problem.write_surface("/nowhere", "x", prescribe(problem, [](const Point&) { return Vector(); })),
+  EXPECT_THROW(problem.write_surface("/nowhere", "x", prescribe(problem, [](const Point &) { return Vector(); })),
                std::runtime_error);
   MPI_Barrier(MPI_COMM_WORLD);
   if (rank == 0)

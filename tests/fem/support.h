@@ -23,7 +23,7 @@ using Stress = dealii::SymmetricTensor<2, 3>;
 
 inline constexpr Moduli copper{48e3, 0.34};
 
-inline double youngs_modulus(const Moduli& moduli)
+inline double youngs_modulus(const Moduli &moduli)
 {
   return 2. * moduli.mu * (1. + moduli.nu);
 }
@@ -48,7 +48,7 @@ inline MeshParameters cylinder(double radius, double height, unsigned across, un
   return parameters;
 }
 
-inline MeshParameters mesh_file(const std::string& name, double unit = 1000.)
+inline MeshParameters mesh_file(const std::string &name, double unit = 1000.)
 {
   MeshParameters parameters;
   parameters.shape = MeshParameters::Shape::gmsh;
@@ -66,17 +66,17 @@ inline ElasticProblem::Parameters accurate(unsigned degree)
 }
 
 /// Values of a displacement field at the boundary points of a problem.
-inline std::vector<Vector> prescribe(const ElasticProblem& problem, const std::function<Vector(const Point&)>& field)
+inline std::vector<Vector> prescribe(const ElasticProblem &problem, const std::function<Vector(const Point &)> &field)
 {
   std::vector<Vector> values;
-  for (const auto& x : problem.boundary_points())
+  for (const auto &x : problem.boundary_points())
   {
     values.push_back(field(x));
   }
   return values;
 }
 
-inline Stress hooke(const Moduli& moduli, const dealii::Tensor<2, 3>& gradient)
+inline Stress hooke(const Moduli &moduli, const dealii::Tensor<2, 3> &gradient)
 {
   const auto strain = symmetrize(gradient);
   const double lambda = 2. * moduli.mu * moduli.nu / (1. - 2. * moduli.nu);
@@ -84,7 +84,7 @@ inline Stress hooke(const Moduli& moduli, const dealii::Tensor<2, 3>& gradient)
 }
 
 /// Points spread over a box, away from its surface and from planes of simple fractions.
-inline std::vector<Point> scattered_points(const Point& low, const Point& high, unsigned n)
+inline std::vector<Point> scattered_points(const Point &low, const Point &high, unsigned n)
 {
   std::vector<Point> points;
   for (unsigned i = 1; i <= n; ++i)
@@ -101,14 +101,14 @@ inline std::vector<Point> scattered_points(const Point& low, const Point& high, 
   return points;
 }
 
-/// Point force F (MPa nm^2) at x0 in an infinite body: Kelvin's solution (Hirth & Lothe, eqs. 2-77 and 2-78).
+/// Point force F (MPa nm^2) at x0 in an infinite body: Kelvin's solution.
 struct PointForce
 {
   Point source;
   Vector force;
   Moduli moduli;
 
-  Vector displacement(const Point& x) const
+  Vector displacement(const Point &x) const
   {
     const Vector arm = x - source;
     const double r = arm.norm();
@@ -117,7 +117,7 @@ struct PointForce
            (16. * std::numbers::pi * moduli.mu * (1. - moduli.nu) * r);
   }
 
-  Stress stress(const Point& x) const
+  Stress stress(const Point &x) const
   {
     const Vector arm = x - source;
     const double r = arm.norm(), factor = -1. / (8. * std::numbers::pi * (1. - moduli.nu) * r * r);
@@ -140,19 +140,19 @@ struct PointForce
 class FunctionField : public TractionField
 {
 public:
-  using StressFunction = std::function<Stress(const Point&)>;
-  using LengthFunction = std::function<double(const Point&, double)>;
+  using StressFunction = std::function<Stress(const Point &)>;
+  using LengthFunction = std::function<double(const Point &, double)>;
 
   /// Smooth everywhere unless told otherwise.
-  explicit FunctionField(StressFunction stress_function, LengthFunction length_function = [](const Point&, double)
-                                                         { return 1e300; })
-    : stress_of(std::move(stress_function))
-    , length_of(std::move(length_function))
-  {}
+  explicit FunctionField(
+      StressFunction stress_function, LengthFunction length_function = [](const Point &, double) { return 1e300; })
+      : stress_of(std::move(stress_function)), length_of(std::move(length_function))
+  {
+  }
 
-  double smooth_length(const Point& centre, double radius) const override { return length_of(centre, radius); }
+  double smooth_length(const Point &centre, double radius) const override { return length_of(centre, radius); }
 
-  void stress(const std::vector<Point>& points, std::vector<Stress>& values) const override
+  void stress(const std::vector<Point> &points, std::vector<Stress> &values) const override
   {
     for (std::size_t i = 0; i < points.size(); ++i)
     {
@@ -165,9 +165,9 @@ private:
   LengthFunction length_of;
 };
 
-inline FunctionField field_of(const PointForce& force)
+inline FunctionField field_of(const PointForce &force)
 {
-  return FunctionField([force](const Point& x) { return force.stress(x); },
-                       [force](const Point& x, double radius) { return x.distance(force.source) - radius; });
+  return FunctionField([force](const Point &x) { return force.stress(x); },
+                       [force](const Point &x, double radius) { return x.distance(force.source) - radius; });
 }
 } // namespace ddfem::fem::test

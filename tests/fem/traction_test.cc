@@ -1,43 +1,42 @@
 // Adaptive quadrature of singular fields over the boundary.
-#include "support.h"
-
 #include "fem/boundary_load.h"
 #include "fem/nodal_grid.h"
+#include "support.h"
 
 #include <deal.II/base/quadrature_lib.h>
-
 #include <gtest/gtest.h>
 
 namespace ddfem::fem::test
 {
 namespace
 {
-/// Screw dislocation along z through `axis` with a core of radius a: s_xz = -mu b y f, s_yz = mu b x f with f = 1 / (r^2 + a^2),
-/// free of divergence whatever f. Its singularity lies at the complex distance a from the axis.
-FunctionField screw(const Point& axis, double a)
+/// Screw dislocation along z through `axis` with a core of radius a: s_xz = -mu b y f, s_yz = mu b x f with f = 1 /
+/// (r^2 + a^2), free of divergence whatever f. Its singularity lies at the complex distance a from the axis.
+FunctionField screw(const Point &axis, double a)
 {
   return FunctionField(
-    [=](const Point& x)
-    {
-      const double dx = x[0] - axis[0], dy = x[1] - axis[1], f = 1e4 / (dx * dx + dy * dy + a * a);
-      Stress s;
-      s[0][2] = -dy * f;
-      s[1][2] = dx * f;
-      return s;
-    },
-    [=](const Point& x, double radius)
-    {
-      const double r = std::max(0., std::hypot(x[0] - axis[0], x[1] - axis[1]) - radius);
-      return std::hypot(r, a);
-    });
+      [=](const Point &x)
+      {
+        const double dx = x[0] - axis[0], dy = x[1] - axis[1], f = 1e4 / (dx * dx + dy * dy + a * a);
+        Stress s;
+        s[0][2] = -dy * f;
+        s[1][2] = dx * f;
+        return s;
+      },
+      [=](const Point &x, double radius)
+      {
+        const double r = std::max(0., std::hypot(x[0] - axis[0], x[1] - axis[1]) - radius);
+        return std::hypot(r, a);
+      });
 }
 
-/// Hydrostatic field 1 / r of a line along y, not in equilibrium: its force and moment can only come out right by integration.
-FunctionField pressure_line(const Point& axis)
+/// Hydrostatic field 1 / r of a line along y, not in equilibrium: its force and moment can only come out right by
+/// integration.
+FunctionField pressure_line(const Point &axis)
 {
-  const auto distance = [=](const Point& x) { return std::hypot(x[0] - axis[0], x[2] - axis[2]); };
-  return FunctionField([=](const Point& x) { return (1e3 / distance(x)) * dealii::unit_symmetric_tensor<3>(); },
-                       [=](const Point& x, double radius) { return distance(x) - radius; });
+  const auto distance = [=](const Point &x) { return std::hypot(x[0] - axis[0], x[2] - axis[2]); };
+  return FunctionField([=](const Point &x) { return (1e3 / distance(x)) * dealii::unit_symmetric_tensor<3>(); },
+                       [=](const Point &x, double radius) { return distance(x) - radius; });
 }
 
 struct Integrals
@@ -47,7 +46,7 @@ struct Integrals
 };
 
 /// Integrals over the faces of the cube [0, 1]^3 * edge by rules of 16 points on strips that shrink towards x = foot.
-Integrals brute_force(const TractionField& field, double edge, double foot, const Point& centre)
+Integrals brute_force(const TractionField &field, double edge, double foot, const Point &centre)
 {
   const dealii::QGauss<1> rule(16);
   std::vector<double> cuts = {0., 1.};
@@ -77,9 +76,9 @@ Integrals brute_force(const TractionField& field, double edge, double foot, cons
   for (unsigned face = 0; face < 6; ++face)
   {
     const unsigned axis = face / 2;
-    for (const auto& [s, ws] : line)
+    for (const auto &[s, ws] : line)
     {
-      for (const auto& [t, wt] : line)
+      for (const auto &[t, wt] : line)
       {
         Point x;
         x[axis] = edge * (face % 2);
@@ -99,7 +98,7 @@ Integrals brute_force(const TractionField& field, double edge, double foot, cons
 }
 
 /// Norm of what two nodal loads differ by, relative.
-double difference(const NodalVector& a, const NodalVector& b)
+double difference(const NodalVector &a, const NodalVector &b)
 {
   NodalVector d = a;
   d -= b;
@@ -109,7 +108,7 @@ double difference(const NodalVector& a, const NodalVector& b)
 
 TEST(Tractions, OfAPointForceInsideAreItsForceAndMoment)
 {
-  for (const auto& parameters : {box({300., 200., 400.}, {3, 2, 4}), cylinder(150., 400., 6, 4)})
+  for (const auto &parameters : {box({300., 200., 400.}, {3, 2, 4}), cylinder(150., 400., 6, 4)})
   {
     const auto mesh = make_mesh(MPI_COMM_WORLD, parameters);
     ElasticProblem problem(*mesh, {}, copper, {});
@@ -148,7 +147,7 @@ TEST(Tractions, OfALineThatPiercesTheSurfaceBalance)
   const auto mesh = make_mesh(MPI_COMM_WORLD, box({300., 200., 400.}, {3, 2, 4}));
   ElasticProblem problem(*mesh, {}, copper, {});
   // In a face, on an edge of faces, at a vertex of the mesh.
-  for (const auto& axis : {Point(137., 81., 0.), Point(100., 33., 0.), Point(100., 100., 0.)})
+  for (const auto &axis : {Point(137., 81., 0.), Point(100., 33., 0.), Point(100., 100., 0.)})
   {
     const auto summary = problem.set_tractions(screw(axis, 0.5));
     EXPECT_EQ(summary.n_unresolved, 0u);
@@ -197,7 +196,8 @@ TEST(Tractions, ASingularityOnTheSurfaceIsReportedAndEnds)
 {
   const auto mesh = make_mesh(MPI_COMM_WORLD, box({300., 200., 400.}, {3, 2, 4}));
   ElasticProblem problem(*mesh, {}, copper, {});
-  const auto summary = problem.set_tractions(field_of(PointForce{Point(137., 81., 400.), Vector({1., 0., 0.}), copper}));
+  const auto summary =
+      problem.set_tractions(field_of(PointForce{Point(137., 81., 400.), Vector({1., 0., 0.}), copper}));
   EXPECT_GT(summary.n_unresolved, 0u);
 }
 
@@ -206,10 +206,10 @@ TEST(Tractions, UniformTractionPressesWithItsAreaTimesItself)
   const auto mesh = make_mesh(MPI_COMM_WORLD, cylinder(150., 400., 6, 4));
   ElasticProblem problem(*mesh, accurate(2), copper, {{1, {true, true, true}}});
   problem.add_uniform_traction(2, Vector({1., 2., 3.}));
-  problem.solve(prescribe(problem, [](const Point&) { return Vector(); }));
+  problem.solve(prescribe(problem, [](const Point &) { return Vector(); }));
   const Vector expected = -problem.boundary_area(2) * Vector({1., 2., 3.});
   EXPECT_LT((problem.reaction(1) - expected).norm(), 1e-9 * expected.norm());
   problem.clear_uniform_tractions();
-  EXPECT_EQ(problem.solve(prescribe(problem, [](const Point&) { return Vector(); })).iterations, 0u);
+  EXPECT_EQ(problem.solve(prescribe(problem, [](const Point &) { return Vector(); })).iterations, 0u);
 }
 } // namespace ddfem::fem::test

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Bad input is answered by one readable message with exit status 2, and nothing is written.
+
+usage: messages_test.py DDFEM EXAMPLE.prm
+"""
+import os
+import subprocess
+import sys
+import tempfile
+
+program, example = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+
+OPEN_B = """dataFileVersion = 4
+numFileSegments = 1
+minCoordinates = [ -500 -500 -500 ]
+maxCoordinates = [ 500 500 500 ]
+nodeCount = 2
+dataDecompType = 1
+dataDecompGeometry = [ 1 1 1 ]
+domainDecomposition =
+ -500 -500 -500 500 500 500
+nodalData =
+ 0,0 -100 0 1500 1 7
+   0,1 0.5773502692 0.5773502692 0.5773502692
+       0 0 1
+ 0,1 100 0 1500 1 7
+   0,0 -0.5773502692 -0.5773502692 -0.5773502692
+       0 0 1
+"""
+
+# name, text appended to (or replacing, if it starts with '!') the example, --set arguments, words the message must have
+CASES = [
+    ("wrong entry name", "subsection Loading\n set Strain rat = 1\nend\n", [],
+     ["input.prm:", "Strain rat", "did you mean 'Strain rate'"]),
+    ("wrong section name", "subsection Loadin\n set Strain rate = 1\nend\n", [],
+     ["input.prm:", "Loadin", "did you mean 'Loading'"]),
+    ("entry at the wrong place", "set Strain rate = 1\n", [], ["input.prm:", "Strain rate", "section 'Loading'"]),
+    ("value out of range", "subsection Domain\n set Element degree = 7\nend\n", [],
+     ["input.prm:", "Domain/Element degree = 7", "1", "2"]),
+    ("word for a number", "subsection Time stepping\n set Final time = soon\nend\n", [],
+     ["input.prm:", "Final time = soon", "a positive number, in s"]),
+    ("wrong choice", "set Mode = finit\n", [], ["input.prm:", "Mode = finit", "finite"]),
+    ("value on the command line", "", ["--set", "Time stepping/Final time=-1"], ["--set", "Final time = -1"]),
+    ("assignment without '='", "", ["--set", "Mode"], ["--set", "Section/Entry=value"]),
+    ("missing end", "subsection Loading\n", [], ["input.prm", "'end' is missing"]),
+    ("not a statement", "hello\n", [], ["input.prm:", "'hello'", "set NAME = VALUE"]),
+    ("missing network file", "subsection Microstructure\n set Network file = nowhere.data\nend\n", [],
+     ["input.prm:", "Network file", "nowhere.data"]),
+    ("missing mesh file", "subsection Domain\n set Shape = mesh\n set Mesh file = nowhere.msh\nend\n", [],
+     ["input.prm:", "Mesh file", "nowhere.msh"]),
+    ("source outside the grain",
+     "subsection Microstructure\n set Frank-Read sources = 1 1 1 / -1 0 1 / 0 0 2e-6 / 2e-7 / 90\nend\n", [],
+     ["Microstructure", "outside the grain", " m "]),
+    ("source with b.n != 0",
+     "subsection Microstructure\n set Frank-Read sources = 1 1 1 / 1 0 1 / 0 0 5e-7 / 2e-7 / 90\nend\n", [],
+     ["input.prm:", "b . n", "[101]", "(111)"]),
+    ("segment with b.n != 0 in a network file",
+     "subsection Microstructure\n set Frank-Read sources =\n set Network file = open.data\nend\n", [],
+     ["open.data:", "b"]),
+    ("directions that are not orthogonal", "subsection Crystal\n set Direction along x = 1 1 1\nend\n", [],
+     ["input.prm:", "Direction along x", "orthogonal"]),
+    ("unknown material", "subsection Material\n set Name = aluminiumm\nend\n", [], ["input.prm:", "aluminium", "copper"]),
+    ("material without slip systems", "subsection Material\n set Name = zirconium\nend\n", [], ["input.prm:", "fcc"]),
+    ("segment limits", "subsection Discretisation\n set Maximum segment = 1.6e-8\nend\n", [],
+     ["input.prm:", "Maximum segment", "twice"]),
+    ("face that does not exist", "subsection Boundary conditions\n set Platen face = top\nend\n", [],
+     ["Platen face", "top", "z+"]),
+    ("loading that the mode does not have", "subsection Loading\n set Type = stress\nend\n", [], ["input.prm:", "Loading/Type"]),
+]
+
+
+def attempt(arguments, directory):
+    return subprocess.run([program] + arguments, cwd=directory, capture_output=True, text=True, timeout=120)
+
+
+def check(name, result, words, directory, before):
+    message = result.stderr.strip()
+    problems = []
+    if result.returncode != 2:
+        problems.append(f"exit status {result.returncode}")
+    if len(message.splitlines()) != 1:
+        problems.append(f"{len(message.splitlines())} lines")
+    problems += [f"no '{w}'" for w in words if w not in message]
+    if sorted(os.listdir(directory)) != before:
+        problems.append("something was written")
+    print(f"{'FAILED' if problems else 'ok':7} {name}: {message}" + (f"   <-- {', '.join(problems)}" if problems else ""))
+    return not problems
+
+
+passed = failed = 0
+for name, text, extra, words in CASES:
+    with tempfile.TemporaryDirectory() as directory:
+        with open(example) as f:
+            base = f.read()
+        with open(os.path.join(directory, "input.prm"), "w") as f:
+            f.write(base + "\n" + text)
+        with open(os.path.join(directory, "open.data"), "w") as f:
+            f.write(OPEN_B)
+        before = sorted(os.listdir(directory))
+        good = check(name, attempt(["run", "input.prm", "-o", "out"] + extra, directory), words, directory, before)
+        passed, failed = passed + good, failed + (not good)
+with tempfile.TemporaryDirectory() as directory:
+    good = check("missing input file", attempt(["run", "nowhere.prm", "-o", "out"], directory), ["nowhere.prm"], directory, [])
+    passed, failed = passed + good, failed + (not good)
+    usage = attempt(["rnu"], directory)
+    passed, failed = passed + (usage.returncode == 2), failed + (usage.returncode != 2)
+print(f"{passed} passed, {failed} failed")
+sys.exit(1 if failed else 0)

@@ -1,0 +1,128 @@
+// Triangular loops under a free plane: the correction stress against values from Mindlin's half-space tensor
+// (tests/data/halfspace_loops.json), in a box graded towards the loop and many times larger than its depth.
+#include "support.h"
+
+#include "coupling/convert.h"
+#include "coupling/dislocation_tractions.h"
+#include "dd/forces/line_system.h"
+#include "fem/elastic_problem.h"
+
+#include <deal.II/distributed/tria.h>
+#include <deal.II/grid/grid_generator.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+using namespace ddfem;
+using namespace ddfem::validation;
+
+namespace
+{
+using Mesh = dealii::parallel::distributed::Triangulation<3>;
+
+/// Element sizes from the fine middle of half-width @p fine outwards to @p half_width, growing by 2.
+std::vector<double> graded(const double h, const double fine, const double half_width)
+{
+  std::vector<double> sizes(static_cast<std::size_t>(std::lround(fine / h)), h);
+  double x = fine, size = h;
+  while (x < half_width)
+  {
+    size *= 2;
+    sizes.push_back(size);
+    x += size;
+  }
+  return sizes;
+}
+
+/// Box z > 0 with its free surface at z = 0, element size @p h near the origin.
+std::unique_ptr<Mesh> graded_box(const double h)
+{
+  const auto half = graded(h, 3.0, 35), depth = graded(h, 6.0, 70);
+  std::vector<double> across(half.rbegin(), half.rend());
+  across.insert(across.end(), half.begin(), half.end());
+  double w = 0, d = 0;
+  for (const double s : half)
+    w += s;
+  for (const double s : depth)
+    d += s;
+  auto mesh = std::make_unique<Mesh>(MPI_COMM_WORLD);
+  dealii::GridGenerator::subdivided_hyper_rectangle(*mesh, {across, across, depth}, dealii::Point<3>(-w, -w, 0),
+                                                    dealii::Point<3>(w, w, d), true);
+  return mesh;
+}
+
+Vec3 vector_of(const nlohmann::json &j)
+{
+  return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()};
+}
+
+/// Largest error of a component over the points deeper than @p depth, relative to the largest image component there.
+double case_error(const nlohmann::json &test, const Mesh &mesh, const double depth)
+{
+  const IsotropicMedium m{test["mu"].get<double>(), test["nu"].get<double>(), 0.01};
+  Network network;
+  std::vector<Vec3> corners;
+  for (const nlohmann::json &v : test["vertices"])
+    corners.push_back(vector_of(v));
+  add_line(network, corners, vector_of(test["b"]), {}, true, NodeConstraint::free);
+  const LineSystem lines(m, network, nullptr, RayDirection::normal, nullptr, nullptr);
+  fem::ElasticProblem problem(mesh, {}, {m.mu, m.nu}, {});
+  problem.set_tractions(coupling::DislocationTractions(lines));
+  problem.solve(std::vector<dealii::Tensor<1, 3>>(problem.boundary_points().size()));
+  std::vector<dealii::Point<3>> points;
+  std::vector<std::array<double, 6>> expected;
+  for (std::size_t k = 0; k < test["points"].size(); ++k)
+    if (const Vec3 x = vector_of(test["points"][k]); x[2] > depth)
+    {
+      points.push_back(coupling::to_point(x));
+      expected.push_back(test["image_stress"][k].get<std::array<double, 6>>());
+    }
+  const auto stress = problem.stress_at(points);
+  double error = 0, scale = 0;
+  for (std::size_t k = 0; k < points.size(); ++k)
+  {
+    const SymTensor computed = coupling::to_sym_tensor(stress[k]);
+    for (std::size_t c = 0; c < 6; ++c)
+    {
+      error = std::max(error, std::abs(computed[static_cast<Eigen::Index>(c)] - expected[k][c]));
+      scale = std::max(scale, std::abs(expected[k][c]));
+    }
+  }
+  return error / scale;
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  std::vector<double> sizes;
+  for (int k = 1; k < argc; ++k)
+    sizes.push_back(std::atof(argv[k])); // element sizes of a convergence study
+  return run(argc, argv, [&](Report &report) {
+    std::ifstream in(DDFEM_TEST_DATA "/halfspace_loops.json");
+    const auto reference = nlohmann::json::parse(in);
+    const auto study     = [&](const double h, const double depth, const std::vector<std::size_t> &cases) {
+      const auto mesh = graded_box(h);
+      double worst    = 0;
+      for (const std::size_t k : cases)
+      {
+        const double error = case_error(reference["cases"][k], *mesh, depth);
+        char row[120];
+        std::snprintf(row, sizeof row, "element size %5.3f, points deeper than %4.2f, loop %zu: largest error %8.4f %%", h,
+                      depth, k, 100 * error);
+        report.note(row);
+        worst = std::max(worst, error);
+      }
+      return worst;
+    };
+    const std::vector<std::size_t> all{0, 1, 2, 3, 4, 5, 6, 7};
+    for (const double h : sizes)
+      study(h, 2.0, all);
+    if (!sizes.empty())
+      return;
+    report.below("deeper than two elements, element size 1: error of the correction", study(1.0, 2.0, all), 0.05);
+    // The loops that are hardest at element size 1, at the same points.
+    const std::vector<std::size_t> hardest{3, 5};
+    const double coarse = study(1.5, 2.0, hardest), fine = study(1.0, 2.0, hardest);
+    report.below("error at element size 1 over error at 1.5 (second order: 0.44)", fine / coarse, 0.6);
+  });
+}
