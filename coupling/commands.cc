@@ -145,7 +145,7 @@ int field_command(const InputArguments &arguments, const std::string &points_fil
   if (simulation.grain())
     require_inside(points, *simulation.grain(), points_file);
   simulation.start();
-  const auto infinite   = simulation.infinite_stress(points);
+  const auto infinite = simulation.infinite_stress(points);
   const auto correction = simulation.correction_stress(points);
   std::ostringstream out;
   out << std::setprecision(15) << "x [m],y [m],z [m]";
@@ -173,12 +173,13 @@ int forces_command(const InputArguments &arguments, const std::string &output_fi
   Simulation simulation(interpret(deck), communicator);
   simulation.start();
   const NodalForces forces = simulation.forces();
-  const Network &network   = simulation.network();
+  const Network &network = simulation.network();
   std::vector<NodeIndex> nodes(network.nodes().begin(), network.nodes().end());
   std::sort(nodes.begin(), nodes.end(), [&](auto a, auto b) { return network.id(a) < network.id(b); });
   std::ostringstream out;
   out << std::setprecision(15) << "node id,x [m],y [m],z [m]";
-  const auto columns = [&](const std::string &name) {
+  const auto columns = [&](const std::string &name)
+  {
     for (const char *c : {"x", "y", "z"})
       out << ",f_" << c << " " << name << " [N]";
   };

@@ -1,9 +1,9 @@
 // The commands of the ddfem program. Each returns the exit status.
 #pragma once
 
-#include <array>
 #include <mpi.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -12,10 +12,10 @@ namespace ddfem::coupling
 /// Exit status of the program (0 is success).
 enum ExitStatus : int
 {
-  exit_success     = 0,
-  exit_failure     = 1, ///< numerical or internal failure
-  exit_input       = 2, ///< usage or invalid input
-  exit_file        = 3, ///< file input or output
+  exit_success = 0,
+  exit_failure = 1,     ///< numerical or internal failure
+  exit_input = 2,       ///< usage or invalid input
+  exit_file = 3,        ///< file input or output
   exit_interrupted = 75 ///< stopped early by a signal
 };
 

@@ -61,7 +61,7 @@ AxisPlane plane_of_face(const std::vector<PolyhedronShape::Facet> &facets, const
       ++n_all;
       if (f.face_id == id)
       {
-        low  = low.cwiseMin(v);
+        low = low.cwiseMin(v);
         high = high.cwiseMax(v);
       }
     }
@@ -80,11 +80,11 @@ std::pair<double, double> imbalance(const fem::TractionSummary &t, const double 
 }
 
 FiniteGrain::FiniteGrain(const GrainParameters &grain_parameters, const IsotropicMedium &elastic_medium, MPI_Comm comm)
-  : parameters(grain_parameters), medium(elastic_medium), communicator(comm)
+    : parameters(grain_parameters), medium(elastic_medium), communicator(comm)
 {
   try
   {
-    mesh       = fem::make_mesh(communicator, parameters.mesh);
+    mesh = fem::make_mesh(communicator, parameters.mesh);
     face_names = fem::boundary_names(parameters.mesh);
     build_shape(parameters);
   }
@@ -100,8 +100,8 @@ FiniteGrain::FiniteGrain(const GrainParameters &grain_parameters, const Isotropi
   const bool clamped = parameters.clamped;
   const std::array<bool, 3> components{clamped || axis == 0, clamped || axis == 1, clamped || axis == 2};
   problem = std::make_unique<fem::ElasticProblem>(
-    *mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu},
-    std::vector<fem::DisplacementCondition>{{fixed_face, components}, {platen_face, components}});
+      *mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu},
+      std::vector<fem::DisplacementCondition>{{fixed_face, components}, {platen_face, components}});
   platen_area = problem->boundary_area(platen_face);
   reference_correction.resize(problem->boundary_points().size());
   infinite_displacement.resize(problem->boundary_points().size());
@@ -140,25 +140,26 @@ void FiniteGrain::build_shape(const GrainParameters &p)
 
 void FiniteGrain::find_platens(const GrainParameters &p)
 {
-  const bool cylinder      = p.mesh.shape == fem::MeshParameters::Shape::cylinder;
-  const bool box           = p.mesh.shape == fem::MeshParameters::Shape::box;
-  const auto name_or       = [&](const std::string &given, const char *for_box, const char *for_cylinder,
-                           const std::string &entry) {
+  const bool cylinder = p.mesh.shape == fem::MeshParameters::Shape::cylinder;
+  const bool box = p.mesh.shape == fem::MeshParameters::Shape::box;
+  const auto name_or =
+      [&](const std::string &given, const char *for_box, const char *for_cylinder, const std::string &entry)
+  {
     if (given.empty() && !box && !cylinder)
       throw InputError("Boundary conditions/" + entry + " = (empty): a mesh needs the name of a physical surface");
     return given.empty() ? std::string(cylinder ? for_cylinder : for_box) : given;
   };
-  const std::string fixed  = name_or(p.fixed_face, "z-", "bottom", "Fixed face");
+  const std::string fixed = name_or(p.fixed_face, "z-", "bottom", "Fixed face");
   const std::string platen = name_or(p.platen_face, "z+", "top", "Platen face");
-  fixed_face               = find_face(face_names, fixed, "Fixed face");
-  platen_face              = find_face(face_names, platen, "Platen face");
-  const auto facets        = facets_of(*mesh);
-  const AxisPlane low      = plane_of_face(facets, static_cast<int>(fixed_face), fixed);
-  const AxisPlane high     = plane_of_face(facets, static_cast<int>(platen_face), platen);
+  fixed_face = find_face(face_names, fixed, "Fixed face");
+  platen_face = find_face(face_names, platen, "Platen face");
+  const auto facets = facets_of(*mesh);
+  const AxisPlane low = plane_of_face(facets, static_cast<int>(fixed_face), fixed);
+  const AxisPlane high = plane_of_face(facets, static_cast<int>(platen_face), platen);
   if (low.axis != high.axis || low.sign == high.sign)
     throw InputError("Boundary conditions: the faces '" + fixed + "' and '" + platen + "' are not opposite each other");
-  axis         = high.axis;
-  platen_sign  = high.sign;
+  axis = high.axis;
+  platen_sign = high.sign;
   gauge_length = std::abs(high.position - low.position);
 }
 
@@ -167,7 +168,7 @@ std::vector<dealii::Tensor<1, 3>> FiniteGrain::prescribed(const double u) const
   std::vector<dealii::Tensor<1, 3>> values(problem->boundary_points().size());
   for (std::size_t i = 0; i < values.size(); ++i)
   {
-    values[i]       = reference_correction[i] - infinite_displacement[i];
+    values[i] = reference_correction[i] - infinite_displacement[i];
     const auto &ids = problem->boundary_ids()[i];
     if (std::find(ids.begin(), ids.end(), platen_face) != ids.end())
       values[i][static_cast<unsigned>(axis)] += platen_sign * u;
@@ -195,13 +196,13 @@ void FiniteGrain::relax(const LineSystem &lines)
 
 void FiniteGrain::add_swept(const SweptArea &area)
 {
-  const auto &points    = problem->boundary_points();
+  const auto &points = problem->boundary_points();
   const auto &triangles = area.triangles();
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     const Vec3 x = to_vec3(points[i]);
-    Vec3 u       = Vec3::Zero();
+    Vec3 u = Vec3::Zero();
     for (const SweptTriangle &t : triangles)
       u += triangle_displacement(medium.nu, x, t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);
     infinite_displacement[i] += to_tensor(u);
@@ -211,13 +212,13 @@ void FiniteGrain::add_swept(const SweptArea &area)
 GrainSolution FiniteGrain::solve(const LineSystem &lines, const double u)
 {
   GrainSolution solution;
-  solution.tractions       = problem->set_tractions(DislocationTractions(lines));
-  const double diameter    = grain_shape->diameter();
+  solution.tractions = problem->set_tractions(DislocationTractions(lines));
+  const double diameter = grain_shape->diameter();
   std::tie(solution.force_imbalance, solution.moment_imbalance) =
-    imbalance(solution.tractions, medium.mu * medium.a * diameter, diameter);
-  solution.solve           = problem->solve(prescribed(u));
-  const auto component     = static_cast<unsigned>(axis);
-  solution.fixed_reaction  = -platen_sign * problem->reaction(fixed_face)[component];
+      imbalance(solution.tractions, medium.mu * medium.a * diameter, diameter);
+  solution.solve = problem->solve(prescribed(u));
+  const auto component = static_cast<unsigned>(axis);
+  solution.fixed_reaction = -platen_sign * problem->reaction(fixed_face)[component];
   solution.platen_reaction = platen_sign * problem->reaction(platen_face)[component];
   return solution;
 }

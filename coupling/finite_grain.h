@@ -8,8 +8,9 @@
 #include "fem/elastic_problem.h"
 #include "fem/mesh.h"
 
-#include <memory>
 #include <mpi.h>
+
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,10 +20,11 @@ namespace ddfem::coupling
 /// What one solve of the boundary-value problem tells.
 struct GrainSolution
 {
-  fem::TractionSummary tractions; ///< of the infinite field over the closed surface: must balance
+  fem::TractionSummary tractions;                   ///< of the infinite field over the closed surface: must balance
   double force_imbalance = 0, moment_imbalance = 0; ///< see imbalance()
   fem::SolveInfo solve;
-  double fixed_reaction  = 0; ///< force on the grain along the outward normal of the fixed face, MPa nm^2; tension positive
+  double fixed_reaction =
+      0; ///< force on the grain along the outward normal of the fixed face, MPa nm^2; tension positive
   double platen_reaction = 0; ///< the same at the platen
 };
 
@@ -37,9 +39,9 @@ public:
 
   const GrainShape &shape() const { return *grain_shape; }
   Vec3 loading_axis() const { return Vec3::Unit(axis); }
-  double height() const { return gauge_length; }       ///< between the faces, nm
-  double section() const { return platen_area; }       ///< area of the platen face, nm^2
-  double volume() const;                               ///< of the mesh, nm^3
+  double height() const { return gauge_length; } ///< between the faces, nm
+  double section() const { return platen_area; } ///< area of the platen face, nm^2
+  double volume() const;                         ///< of the mesh, nm^3
   std::uint64_t n_dofs() const;
   /// Nominal stress per nominal strain of the grain under its own boundary conditions (one solve without dislocations), MPa.
   double unit_load_modulus() const { return modulus; }
@@ -71,12 +73,12 @@ private:
   fem::TriangulationPointer mesh;
   std::map<dealii::types::boundary_id, std::string> face_names;
   dealii::types::boundary_id fixed_face = 0, platen_face = 0;
-  int axis                = 2;   ///< loading axis
-  double platen_sign      = 1.0; ///< outward normal of the platen along the axis
+  int axis = 2;             ///< loading axis
+  double platen_sign = 1.0; ///< outward normal of the platen along the axis
   double gauge_length = 0, platen_area = 0, modulus = 0;
   std::unique_ptr<GrainShape> grain_shape;
   std::unique_ptr<fem::ElasticProblem> problem;
-  std::vector<dealii::Tensor<1, 3>> reference_correction; ///< u^(0) at the boundary nodes
+  std::vector<dealii::Tensor<1, 3>> reference_correction;  ///< u^(0) at the boundary nodes
   std::vector<dealii::Tensor<1, 3>> infinite_displacement; ///< u~ since the reference, at the boundary nodes
 };
 

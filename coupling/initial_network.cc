@@ -25,8 +25,8 @@ Network read_network(const Parameters &p)
   ParadisReadOptions options;
   options.burgers_magnitude = p.burgers_magnitude;
   options.cubic_orientation = p.orientation;
-  options.periodic          = p.mode == Mode::periodic;
-  options.strict            = true;
+  options.periodic = p.mode == Mode::periodic;
+  options.strict = true;
   try
   {
     ParadisData data = read_paradis_data(p.network_file, options);
@@ -72,7 +72,7 @@ void fit_into_grain(Network &network, const GrainShape &shape, const double min_
   const double tolerance = 1e-3 * min_segment;
   for (const NodeIndex i : network.nodes())
   {
-    const Vec3 x     = network.position(i);
+    const Vec3 x = network.position(i);
     const double phi = shape.signed_distance(x);
     const bool surface = network.constraint(i) == NodeConstraint::surface;
     if (phi > tolerance)
@@ -81,7 +81,7 @@ void fit_into_grain(Network &network, const GrainShape &shape, const double min_
     if (!surface)
       continue;
     const auto arms = network.connected_segments(i);
-    const auto y    = project_to_surface(shape, x, arms.empty() ? Vec3(Vec3::Zero()) : network.normal(arms[0]));
+    const auto y = project_to_surface(shape, x, arms.empty() ? Vec3(Vec3::Zero()) : network.normal(arms[0]));
     if (!y || (*y - x).norm() > tolerance + 1e-3 * shape.diameter())
       throw InputError("Microstructure: surface node " + std::to_string(network.id(i)) + " at " + in_metres(x) +
                        " is not on the surface of the grain");
@@ -91,7 +91,8 @@ void fit_into_grain(Network &network, const GrainShape &shape, const double min_
 
 ProductPlane product_plane_rule(const SlipSystems &systems)
 {
-  return [systems](Network &network, const Vec3 &xi, const Vec3 &b, const Vec3 &point) -> PlaneIndex {
+  return [systems](Network &network, const Vec3 &xi, const Vec3 &b, const Vec3 &point) -> PlaneIndex
+  {
     for (const std::size_t k : systems.glissile_planes(b))
     {
       const SlipPlane &plane = systems.planes()[k];

@@ -41,13 +41,14 @@ std::size_t edit_distance(const std::string &a, const std::string &b)
   for (std::size_t i = 1; i <= a.size(); ++i)
   {
     std::size_t diagonal = row[0];
-    row[0]               = i;
+    row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j)
     {
-      const bool same = std::tolower(static_cast<unsigned char>(a[i - 1])) == std::tolower(static_cast<unsigned char>(b[j - 1]));
+      const bool same =
+          std::tolower(static_cast<unsigned char>(a[i - 1])) == std::tolower(static_cast<unsigned char>(b[j - 1]));
       const std::size_t next = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (same ? 0 : 1)});
-      diagonal               = row[j];
-      row[j]                 = next;
+      diagonal = row[j];
+      row[j] = next;
     }
   }
   return row[b.size()];
@@ -66,15 +67,15 @@ std::string allowed_values(const ParameterEntry &e)
 {
   std::string text = e.pattern->description(dealii::Patterns::PatternBase::Text);
   const std::vector<std::pair<std::string, std::string>> plain_words{
-    {"A floating point number v such that 2.22507e-308 <= v <= MAX_DOUBLE", "a positive number"},
-    {"A floating point number v such that 0 <= v <= MAX_DOUBLE", "a number not below zero"},
-    {"A floating point number v such that -MAX_DOUBLE <= v <= MAX_DOUBLE", "a number"},
-    {"A floating point number v such that", "a number v with"},
-    {"An integer n such that", "an integer n with"},
-    {"<= n <= 2147483647", "<= n"},
-    {"Any one of", "one of"},
-    {"A boolean value (true or false)", "true or false"},
-    {"Any string", "text"}};
+      {"A floating point number v such that 2.22507e-308 <= v <= MAX_DOUBLE", "a positive number"},
+      {"A floating point number v such that 0 <= v <= MAX_DOUBLE", "a number not below zero"},
+      {"A floating point number v such that -MAX_DOUBLE <= v <= MAX_DOUBLE", "a number"},
+      {"A floating point number v such that", "a number v with"},
+      {"An integer n such that", "an integer n with"},
+      {"<= n <= 2147483647", "<= n"},
+      {"Any one of", "one of"},
+      {"A boolean value (true or false)", "true or false"},
+      {"Any string", "text"}};
   for (const auto &[from, to] : plain_words)
     if (const auto at = text.find(from); at != std::string::npos)
       text.replace(at, from.size(), to);
@@ -86,12 +87,11 @@ std::string unit_suffix(const ParameterEntry &e)
   return e.unit.empty() ? "" : ", in " + e.unit;
 }
 
-
 std::string unknown_entry_message(const std::string &path)
 {
-  const auto slash          = path.rfind('/');
+  const auto slash = path.rfind('/');
   const std::string section = slash == std::string::npos ? "" : path.substr(0, slash);
-  const std::string name    = slash == std::string::npos ? path : path.substr(slash + 1);
+  const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
   std::vector<std::string> in_section, sections, elsewhere;
   for (const ParameterEntry &e : parameter_table())
   {
@@ -105,7 +105,7 @@ std::string unknown_entry_message(const std::string &path)
   std::string message;
   if (in_section.empty())
   {
-    message              = "there is no section '" + section + "'";
+    message = "there is no section '" + section + "'";
     const std::string near = closest_match(section, sections);
     if (!near.empty())
       message += "; did you mean '" + near + "'?";
@@ -118,8 +118,9 @@ std::string unknown_entry_message(const std::string &path)
   else if (!elsewhere.empty())
     message += elsewhere[0].empty() ? "; it belongs at top level" : "; it belongs in section '" + elsewhere[0] + "'";
   else
-    message += "; known are: " + std::accumulate(std::next(in_section.begin()), in_section.end(), in_section[0],
-                                                  [](const std::string &a, const std::string &b) { return a + ", " + b; });
+    message +=
+        "; known are: " + std::accumulate(std::next(in_section.begin()), in_section.end(), in_section[0],
+                                          [](const std::string &a, const std::string &b) { return a + ", " + b; });
   return message;
 }
 
@@ -147,7 +148,7 @@ std::string closest_match(const std::string &word, const std::vector<std::string
     if (const std::size_t d = edit_distance(word, c); d < distance)
     {
       distance = d;
-      best     = c;
+      best = c;
     }
   return best;
 }
@@ -164,7 +165,7 @@ void InputDeck::set(const std::string &path, const std::string &given, const std
   if (!entry)
     throw InputError(where + ": " + unknown_entry_message(path));
   // Lists of numbers are separated by single blanks for deal.II, by any blanks or commas for people.
-  const bool is_list      = dynamic_cast<const dealii::Patterns::List *>(entry->pattern.get()) != nullptr;
+  const bool is_list = dynamic_cast<const dealii::Patterns::List *>(entry->pattern.get()) != nullptr;
   const std::string value = is_list ? single_blanks(given) : given;
   if (!entry->pattern->match(value))
     throw InputError(where + ": " + path + " = " + (value.empty() ? "(empty)" : value) + ": allowed is " +
@@ -192,7 +193,7 @@ void InputDeck::read_prm(const std::string &file)
   for (unsigned number = 1; std::getline(in, line); ++number)
   {
     const std::string where = file + ":" + std::to_string(number);
-    line                    = trim(line.substr(0, line.find('#')));
+    line = trim(line.substr(0, line.find('#')));
     std::replace(line.begin(), line.end(), '\t', ' ');
     while (!line.empty() && line.back() == '\\')
     {
@@ -220,7 +221,8 @@ void InputDeck::read_prm(const std::string &file)
       set(path + trim(line.substr(4, equals - 4)), trim(line.substr(equals + 1)), where);
     }
     else
-      throw InputError(where + ": '" + line + "' is neither 'subsection NAME', 'set NAME = VALUE', 'end' nor a comment");
+      throw InputError(where + ": '" + line +
+                       "' is neither 'subsection NAME', 'set NAME = VALUE', 'end' nor a comment");
   }
   if (!sections.empty())
     throw InputError(file + ": the file ends inside subsection '" + sections.back() + "': an 'end' is missing");
@@ -238,16 +240,17 @@ void InputDeck::read_json(const std::string &file)
     throw InputError(file + ":" + std::to_string(e.line()) + ": not valid JSON: " + e.message());
   }
   const std::function<void(const boost::property_tree::ptree &, const std::string &)> visit =
-    [&](const boost::property_tree::ptree &node, const std::string &path) {
-      for (const auto &[name, child] : node)
-      {
-        const std::string child_path = path.empty() ? name : path + "/" + name;
-        if (child.empty())
-          set(child_path, trim(child.data()), file);
-        else
-          visit(child, child_path);
-      }
-    };
+      [&](const boost::property_tree::ptree &node, const std::string &path)
+  {
+    for (const auto &[name, child] : node)
+    {
+      const std::string child_path = path.empty() ? name : path + "/" + name;
+      if (child.empty())
+        set(child_path, trim(child.data()), file);
+      else
+        visit(child, child_path);
+    }
+  };
   visit(tree, "");
 }
 

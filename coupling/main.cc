@@ -30,7 +30,8 @@ int guarded(const std::function<int()> &command)
 {
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  const auto say = [&](const std::string &message) {
+  const auto say = [&](const std::string &message)
+  {
     if (rank == 0)
       std::cerr << "ddfem: " << message << std::endl;
   };
@@ -64,8 +65,8 @@ void add_input(CLI::App &command, Options &o)
 {
   command.add_option("INPUT", o.input.input, "input file (.prm or .json)")->required();
   command.add_option("--set", o.input.assignments, "\"Section/Entry=value\", overrides the input; repeatable")
-    ->take_all()
-    ->allow_extra_args(false);
+      ->take_all()
+      ->allow_extra_args(false);
   command.add_option("--threads", o.threads, "OpenMP threads per process");
 }
 
@@ -85,8 +86,8 @@ int main(int argc, char **argv)
   add_input(*check, o);
   auto *parameters = app.add_subcommand("parameters", "print all input entries with their defaults");
   parameters->add_option("--format", o.format, "prm, json or md")
-    ->check(CLI::IsMember({"prm", "json", "md"}))
-    ->capture_default_str();
+      ->check(CLI::IsMember({"prm", "json", "md"}))
+      ->capture_default_str();
   auto *field = app.add_subcommand("field", "infinite, correction and total stress of the initial state at points");
   add_input(*field, o);
   field->add_option("--points", o.points, "CSV with columns x,y,z in m")->required();
@@ -111,13 +112,15 @@ int main(int argc, char **argv)
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, threads);
   omp_set_num_threads(static_cast<int>(threads));
   install_signal_handlers();
-  return guarded([&] {
-    if (run->parsed())
-      return run_command(o.input, o.directory, MPI_COMM_WORLD);
-    if (check->parsed())
-      return check_command(o.input, MPI_COMM_WORLD);
-    if (field->parsed())
-      return field_command(o.input, o.points, o.output, MPI_COMM_WORLD);
-    return forces_command(o.input, o.output, MPI_COMM_WORLD);
-  });
+  return guarded(
+      [&]
+      {
+        if (run->parsed())
+          return run_command(o.input, o.directory, MPI_COMM_WORLD);
+        if (check->parsed())
+          return check_command(o.input, MPI_COMM_WORLD);
+        if (field->parsed())
+          return field_command(o.input, o.points, o.output, MPI_COMM_WORLD);
+        return forces_command(o.input, o.output, MPI_COMM_WORLD);
+      });
 }

@@ -56,14 +56,17 @@ void add_material(std::vector<ParameterEntry> &t)
   const std::string s = "Material";
   t.push_back({s, "Name", "aluminium", words(), "",
                "Named material: aluminium, copper, nickel (sources of the numbers: docs/materials.md)."});
-  t.push_back({s, "Shear modulus", "0", not_negative(), "Pa", "Isotropic shear modulus; 0: that of the named material."});
+  t.push_back(
+      {s, "Shear modulus", "0", not_negative(), "Pa", "Isotropic shear modulus; 0: that of the named material."});
   t.push_back({s, "Poisson ratio", "0", between(0, 0.4999), "", "Poisson's ratio; 0: that of the named material."});
-  t.push_back({s, "Lattice parameter", "0", not_negative(), "m", "Cubic lattice parameter; 0: that of the named material."});
+  t.push_back(
+      {s, "Lattice parameter", "0", not_negative(), "m", "Cubic lattice parameter; 0: that of the named material."});
   t.push_back({s, "Core radius", "0", not_negative(), "m",
                "Core radius a of the non-singular theory (Cai et al., JMPS 54 (2006) 561); 0: one Burgers vector."});
-  t.push_back({s, "Core cutoff radius", "0", not_negative(), "m",
-               "Radius r_c in the core energy mu/(4 pi) ln(a/r_c) (b_s^2 + b_e^2/(1-nu)) per length, which makes the energy "
-               "of a line independent of a; 0: a, that is no core energy beyond the non-singular one."});
+  t.push_back(
+      {s, "Core cutoff radius", "0", not_negative(), "m",
+       "Radius r_c in the core energy mu/(4 pi) ln(a/r_c) (b_s^2 + b_e^2/(1-nu)) per length, which makes the energy "
+       "of a line independent of a; 0: a, that is no core energy beyond the non-singular one."});
 }
 
 void add_crystal(std::vector<ParameterEntry> &t)
@@ -78,28 +81,33 @@ void add_crystal(std::vector<ParameterEntry> &t)
 void add_mobility(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Mobility";
-  t.push_back({s, "Edge drag", "0", not_negative(), "Pa s", "Drag coefficient B of edge lines: v = tau b / B; 0: that of the named material."});
-  t.push_back({s, "Screw drag", "0", not_negative(), "Pa s", "Drag coefficient B of screw lines; 0: that of the named material."});
+  t.push_back({s, "Edge drag", "0", not_negative(), "Pa s",
+               "Drag coefficient B of edge lines: v = tau b / B; 0: that of the named material."});
+  t.push_back({s, "Screw drag", "0", not_negative(), "Pa s",
+               "Drag coefficient B of screw lines; 0: that of the named material."});
 }
 
 void add_domain(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Domain";
-  t.push_back({s, "Shape", "box", one_of("box|cylinder|mesh"), "",
-               "Finite grain: box, cylinder (axis z) or hexahedral gmsh mesh. Periodic cell and infinite body: box; the latter "
-               "uses its volume only to turn swept area into plastic strain."});
+  t.push_back(
+      {s, "Shape", "box", one_of("box|cylinder|mesh"), "",
+       "Finite grain: box, cylinder (axis z) or hexahedral gmsh mesh. Periodic cell and infinite body: box; the latter "
+       "uses its volume only to turn swept area into plastic strain."});
   t.push_back({s, "Origin", "0 0 0", vector_of(3), "m",
                "Lowest corner of the box, centre of the bottom disc of the cylinder, or shift of the mesh."});
   t.push_back({s, "Size", "1e-6 1e-6 1e-6", vector_of(3), "m", "Edge lengths of the box."});
   t.push_back({s, "Radius", "0.5e-6", positive(), "m", "Radius of the cylinder."});
   t.push_back({s, "Height", "2e-6", positive(), "m", "Height of the cylinder."});
-  t.push_back({s, "Mesh file", "", words(), "", "Hexahedral gmsh .msh file (format 2.2 or 4.1) with physical surfaces."});
+  t.push_back(
+      {s, "Mesh file", "", words(), "", "Hexahedral gmsh .msh file (format 2.2 or 4.1) with physical surfaces."});
   t.push_back({s, "Mesh unit", "1", positive(), "m", "Length of one coordinate unit of the mesh file."});
   t.push_back({s, "Subdivisions", "6 6 12", std::make_shared<Patterns::List>(Patterns::Integer(1, 1000), 3, 3, " "), "",
                "Elements along x, y, z (box); across the diameter (first) and along the axis (third) of a cylinder."});
   t.push_back({s, "Refinements", "0", count(0, 6), "", "Uniform refinements of the mesh."});
   t.push_back({s, "Element degree", "2", count(1, 2), "", "Polynomial degree of the elements: 1 or 2."});
-  t.push_back({s, "Elastic tolerance", "1e-7", between(1e-14, 1e-2), "", "Residual of the FEM solve relative to its load."});
+  t.push_back(
+      {s, "Elastic tolerance", "1e-7", between(1e-14, 1e-2), "", "Residual of the FEM solve relative to its load."});
   t.push_back({s, "Traction tolerance", "1e-6", between(1e-12, 1e-2), "",
                "Relative error aimed at in the integrals of the infinite-body tractions over the boundary."});
 }
@@ -107,45 +115,56 @@ void add_domain(std::vector<ParameterEntry> &t)
 void add_boundary(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Boundary conditions";
-  t.push_back({s, "Fixed face", "", words(), "",
-               "Face held in place: x-, x+, y-, y+, z-, z+ (box), bottom, top (cylinder), or the name of a physical surface. "
-               "Empty: z- or bottom."});
+  t.push_back(
+      {s, "Fixed face", "", words(), "",
+       "Face held in place: x-, x+, y-, y+, z-, z+ (box), bottom, top (cylinder), or the name of a physical surface. "
+       "Empty: z- or bottom."});
   t.push_back({s, "Platen face", "", words(), "", "Face that the platen moves; empty: z+ or top."});
-  t.push_back({s, "Platen contact", "clamped", one_of("clamped|frictionless"), "",
-               "Clamped: all displacements of the two faces prescribed; frictionless: only those along the loading axis."});
+  t.push_back(
+      {s, "Platen contact", "clamped", one_of("clamped|frictionless"), "",
+       "Clamped: all displacements of the two faces prescribed; frictionless: only those along the loading axis."});
   t.push_back({s, "Impenetrable faces", "", words(), "",
                "Faces at which lines stop, separated by ';'. Lines leave through all others."});
-  t.push_back({s, "Reference state", "relaxed", one_of("relaxed|perfect crystal"), "",
-               "Prescribed displacements are counted from the grain relaxed with all surfaces traction-free at t = 0, or from "
-               "the perfect crystal (closed loops and lines between surface points only)."});
+  t.push_back(
+      {s, "Reference state", "relaxed", one_of("relaxed|perfect crystal"), "",
+       "Prescribed displacements are counted from the grain relaxed with all surfaces traction-free at t = 0, or from "
+       "the perfect crystal (closed loops and lines between surface points only)."});
   t.push_back({s, "Ray direction", "normal", one_of("normal|radial"), "",
-               "Direction of the virtual continuation of lines that end at the surface; the total field does not depend on it."});
+               "Direction of the virtual continuation of lines that end at the surface; the total field does not "
+               "depend on it."});
 }
 
 void add_loading(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Loading";
-  t.push_back({s, "Type", "strain rate", one_of("none|stress|strain rate"), "",
-               "Finite grain: none (relaxation between the held faces) or strain rate (platen displacement rate over height). "
-               "Periodic cell: stress or strain rate. Infinite body: stress."});
-  t.push_back({s, "Axis", "0 0 1", vector_of(3), "",
-               "Loading axis in the sample frame (periodic cell; the finite grain is loaded along the normal of its platen)."});
-  t.push_back({s, "Strain rate", "-1e4", any_number(), "1/s", "Nominal strain rate along the axis; negative in compression."});
-  t.push_back({s, "Stress", "0 0 0 0 0 0", vector_of(6), "Pa", "Applied stress at t = 0: xx yy zz xy xz yz, sample frame."});
-  t.push_back({s, "Stress rate", "0 0 0 0 0 0", vector_of(6), "Pa/s", "Rate of the applied stress: xx yy zz xy xz yz."});
+  t.push_back(
+      {s, "Type", "strain rate", one_of("none|stress|strain rate"), "",
+       "Finite grain: none (relaxation between the held faces) or strain rate (platen displacement rate over height). "
+       "Periodic cell: stress or strain rate. Infinite body: stress."});
+  t.push_back(
+      {s, "Axis", "0 0 1", vector_of(3), "",
+       "Loading axis in the sample frame (periodic cell; the finite grain is loaded along the normal of its platen)."});
+  t.push_back(
+      {s, "Strain rate", "-1e4", any_number(), "1/s", "Nominal strain rate along the axis; negative in compression."});
+  t.push_back(
+      {s, "Stress", "0 0 0 0 0 0", vector_of(6), "Pa", "Applied stress at t = 0: xx yy zz xy xz yz, sample frame."});
+  t.push_back(
+      {s, "Stress rate", "0 0 0 0 0 0", vector_of(6), "Pa/s", "Rate of the applied stress: xx yy zz xy xz yz."});
 }
 
 void add_microstructure(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Microstructure";
-  t.push_back({s, "Frank-Read sources", "", words(), "",
-               "Sources separated by ';', each as 'plane / Burgers direction / centre / length / character': Miller indices, "
-               "sample coordinates in m, length in m, angle between line and Burgers vector in degrees (0 screw, 90 edge). "
-               "Example: 1 1 1 / -1 0 1 / 0 0 5e-7 / 2e-7 / 90."});
-  t.push_back({s, "Loops", "", words(), "",
-               "Closed loops separated by ';', each as 'plane / Burgers direction / centre / radius / corners': regular "
-               "polygons in the given plane. A Burgers vector out of the plane makes a prismatic loop, whose sides glide on "
-               "the planes of its prism. Example: 1 1 1 / -1 0 1 / 0 0 5e-7 / 1e-7 / 24."});
+  t.push_back(
+      {s, "Frank-Read sources", "", words(), "",
+       "Sources separated by ';', each as 'plane / Burgers direction / centre / length / character': Miller indices, "
+       "sample coordinates in m, length in m, angle between line and Burgers vector in degrees (0 screw, 90 edge). "
+       "Example: 1 1 1 / -1 0 1 / 0 0 5e-7 / 2e-7 / 90."});
+  t.push_back(
+      {s, "Loops", "", words(), "",
+       "Closed loops separated by ';', each as 'plane / Burgers direction / centre / radius / corners': regular "
+       "polygons in the given plane. A Burgers vector out of the plane makes a prismatic loop, whose sides glide on "
+       "the planes of its prism. Example: 1 1 1 / -1 0 1 / 0 0 5e-7 / 1e-7 / 24."});
   t.push_back({s, "Network file", "", words(), "",
                "ParaDiS .data file (version 4), lengths in Burgers vectors; added to the sources and loops."});
 }
@@ -153,8 +172,10 @@ void add_microstructure(std::vector<ParameterEntry> &t)
 void add_discretisation(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Discretisation";
-  t.push_back({s, "Minimum segment", "10e-9", positive(), "m", "L_min: shorter segments are merged into their neighbours."});
-  t.push_back({s, "Maximum segment", "30e-9", positive(), "m", "L_max: longer segments are halved; at least twice L_min."});
+  t.push_back(
+      {s, "Minimum segment", "10e-9", positive(), "m", "L_min: shorter segments are merged into their neighbours."});
+  t.push_back(
+      {s, "Maximum segment", "30e-9", positive(), "m", "L_max: longer segments are halved; at least twice L_min."});
   t.push_back({s, "Minimum area", "0", not_negative(), "m^2",
                "A node whose triangle with its neighbours is smaller is removed; 0: 0.01 L_min^2."});
   t.push_back({s, "Collision radius", "0", not_negative(), "m", "Capture distance of collisions; 0: L_min / 8."});
@@ -167,15 +188,18 @@ void add_numerics(std::vector<ParameterEntry> &t)
   const std::string s = "Time stepping";
   t.push_back({s, "Final time", "1e-6", positive(), "s", "The run ends at this time."});
   t.push_back({s, "Maximum steps", "1000000", count(1), "", "The run ends after this many steps."});
-  t.push_back({s, "Final strain", "0", not_negative(), "", "The run ends when the magnitude of the nominal strain reaches this; 0: never."});
+  t.push_back({s, "Final strain", "0", not_negative(), "",
+               "The run ends when the magnitude of the nominal strain reaches this; 0: never."});
   t.push_back({s, "Final plastic strain", "0", not_negative(), "",
                "The run ends when the norm of the plastic strain tensor reaches this; 0: never."});
   t.push_back({s, "Equilibrium speed", "0", not_negative(), "m/s",
                "The run ends when no node is faster than this (from the second step on); 0: never."});
   t.push_back({s, "Initial step", "1e-13", positive(), "s", "First time step."});
   t.push_back({s, "Maximum step", "1e-9", positive(), "s", "Largest time step."});
-  t.push_back({s, "Position tolerance", "0", not_negative(), "m", "Estimated error of a node's position per step; 0: L_min / 50."});
-  t.push_back({s, "Maximum displacement", "0", not_negative(), "m", "Largest motion of a node in one step; 0: L_min / 2."});
+  t.push_back({s, "Position tolerance", "0", not_negative(), "m",
+               "Estimated error of a node's position per step; 0: L_min / 50."});
+  t.push_back(
+      {s, "Maximum displacement", "0", not_negative(), "m", "Largest motion of a node in one step; 0: L_min / 2."});
   t.push_back({s, "Maximum stages", "30", count(2, 200), "", "Most stages of the stabilised Runge-Kutta step."});
 }
 
@@ -183,8 +207,10 @@ void add_output(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Output";
   t.push_back({s, "History interval", "1", count(1), "", "Steps between two rows of history.csv."});
-  t.push_back({s, "Frame interval", "50", count(0), "", "Steps between two frames of dislocations.pvd and grain.pvd; 0: first and last only."});
-  t.push_back({s, "Check network", "true", yes_no(), "", "Check the invariants of the network after every step and stop when one is violated."});
+  t.push_back({s, "Frame interval", "50", count(0), "",
+               "Steps between two frames of dislocations.pvd and grain.pvd; 0: first and last only."});
+  t.push_back({s, "Check network", "true", yes_no(), "",
+               "Check the invariants of the network after every step and stop when one is violated."});
 }
 
 std::vector<ParameterEntry> make_table()

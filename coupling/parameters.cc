@@ -52,15 +52,15 @@ void read_material(const InputDeck &deck, Parameters &p)
   }
   if (material->lattice != Lattice::fcc)
     deck.reject("Material/Name", std::string("is ") + name_of(material->lattice) + "; allowed are fcc materials");
-  p.medium.mu         = number_or(deck, "Material/Shear modulus", units::pascal, material->mu);
-  p.medium.nu         = number_or(deck, "Material/Poisson ratio", 1, material->nu);
+  p.medium.mu = number_or(deck, "Material/Shear modulus", units::pascal, material->mu);
+  p.medium.nu = number_or(deck, "Material/Poisson ratio", 1, material->nu);
   p.lattice_parameter = number_or(deck, "Material/Lattice parameter", units::metre, material->lattice_parameter);
   p.burgers_magnitude = p.lattice_parameter / std::sqrt(2.0);
-  p.medium.a          = number_or(deck, "Material/Core radius", units::metre, p.burgers_magnitude);
-  p.core_cutoff_radius   = number_or(deck, "Material/Core cutoff radius", units::metre, p.medium.a);
-  p.mobility.drag_edge   = number_or(deck, "Mobility/Edge drag", units::pascal_second, material->drag);
-  p.mobility.drag_screw  = number_or(deck, "Mobility/Screw drag", units::pascal_second, material->drag);
-  p.pair_tolerance       = deck.number("Forces/Pair tolerance");
+  p.medium.a = number_or(deck, "Material/Core radius", units::metre, p.burgers_magnitude);
+  p.core_cutoff_radius = number_or(deck, "Material/Core cutoff radius", units::metre, p.medium.a);
+  p.mobility.drag_edge = number_or(deck, "Mobility/Edge drag", units::pascal_second, material->drag);
+  p.mobility.drag_screw = number_or(deck, "Mobility/Screw drag", units::pascal_second, material->drag);
+  p.pair_tolerance = deck.number("Forces/Pair tolerance");
 }
 
 void read_orientation(const InputDeck &deck, Parameters &p)
@@ -79,23 +79,23 @@ void read_orientation(const InputDeck &deck, Parameters &p)
 
 void read_mesh(const InputDeck &deck, Parameters &p)
 {
-  auto &mesh              = p.grain.mesh;
+  auto &mesh = p.grain.mesh;
   const std::string shape = deck.text("Domain/Shape");
   mesh.shape = shape == "box"        ? fem::MeshParameters::Shape::box
                : shape == "cylinder" ? fem::MeshParameters::Shape::cylinder
                                      : fem::MeshParameters::Shape::gmsh;
   const Vec3 origin = to_vec3(deck.numbers("Domain/Origin", 3)) * units::metre;
-  const Vec3 size   = to_vec3(deck.numbers("Domain/Size", 3)) * units::metre;
+  const Vec3 size = to_vec3(deck.numbers("Domain/Size", 3)) * units::metre;
   if ((size.array() <= 0).any())
     deck.reject("Domain/Size", "edge lengths must be positive");
   mesh.origin = {origin[0], origin[1], origin[2]};
-  mesh.size   = {size[0], size[1], size[2]};
+  mesh.size = {size[0], size[1], size[2]};
   mesh.radius = deck.number("Domain/Radius") * units::metre;
   mesh.height = deck.number("Domain/Height") * units::metre;
   const auto subdivisions = deck.numbers("Domain/Subdivisions", 3);
   for (std::size_t c = 0; c < 3; ++c)
     mesh.subdivisions[c] = static_cast<unsigned>(subdivisions[c]);
-  mesh.refinements    = deck.integer("Domain/Refinements");
+  mesh.refinements = deck.integer("Domain/Refinements");
   mesh.length_unit_nm = deck.number("Domain/Mesh unit") * units::metre;
   if (mesh.shape == fem::MeshParameters::Shape::gmsh)
   {
@@ -112,29 +112,31 @@ void read_mesh(const InputDeck &deck, Parameters &p)
 
 void read_grain(const InputDeck &deck, Parameters &p)
 {
-  p.grain.elasticity.degree             = deck.integer("Domain/Element degree");
+  p.grain.elasticity.degree = deck.integer("Domain/Element degree");
   p.grain.elasticity.relative_tolerance = deck.number("Domain/Elastic tolerance");
   p.grain.elasticity.traction_tolerance = deck.number("Domain/Traction tolerance");
-  p.grain.fixed_face                    = deck.text("Boundary conditions/Fixed face");
-  p.grain.platen_face                   = deck.text("Boundary conditions/Platen face");
-  p.grain.clamped                       = deck.text("Boundary conditions/Platen contact") == "clamped";
-  p.grain.impenetrable_faces            = deck.items("Boundary conditions/Impenetrable faces");
-  p.grain.reference     = deck.text("Boundary conditions/Reference state") == "relaxed" ? ReferenceState::relaxed
-                                                                                       : ReferenceState::perfect_crystal;
-  p.grain.ray_direction = deck.text("Boundary conditions/Ray direction") == "normal" ? RayDirection::normal
-                                                                                     : RayDirection::radial;
+  p.grain.fixed_face = deck.text("Boundary conditions/Fixed face");
+  p.grain.platen_face = deck.text("Boundary conditions/Platen face");
+  p.grain.clamped = deck.text("Boundary conditions/Platen contact") == "clamped";
+  p.grain.impenetrable_faces = deck.items("Boundary conditions/Impenetrable faces");
+  p.grain.reference = deck.text("Boundary conditions/Reference state") == "relaxed" ? ReferenceState::relaxed
+                                                                                    : ReferenceState::perfect_crystal;
+  p.grain.ray_direction =
+      deck.text("Boundary conditions/Ray direction") == "normal" ? RayDirection::normal : RayDirection::radial;
 }
 
 void read_loading(const InputDeck &deck, Parameters &p)
 {
   const std::string type = deck.text("Loading/Type");
-  p.loading.type = type == "none" ? LoadingType::none : type == "stress" ? LoadingType::stress : LoadingType::strain_rate;
+  p.loading.type = type == "none"     ? LoadingType::none
+                   : type == "stress" ? LoadingType::stress
+                                      : LoadingType::strain_rate;
   const Vec3 axis = to_vec3(deck.numbers("Loading/Axis", 3));
   if (axis.norm() == 0)
     deck.reject("Loading/Axis", "must not be zero");
-  p.loading.axis        = axis.normalized();
+  p.loading.axis = axis.normalized();
   p.loading.strain_rate = deck.number("Loading/Strain rate") * units::per_second;
-  p.loading.stress      = to_tensor(deck.numbers("Loading/Stress", 6)) * units::pascal;
+  p.loading.stress = to_tensor(deck.numbers("Loading/Stress", 6)) * units::pascal;
   p.loading.stress_rate = to_tensor(deck.numbers("Loading/Stress rate", 6)) * units::pascal / units::second;
   if (p.mode == Mode::finite && p.loading.type == LoadingType::stress)
     deck.reject("Loading/Type", "a finite grain is loaded by 'strain rate' or 'none'");
@@ -183,16 +185,16 @@ void read_sources(const InputDeck &deck, Parameters &p)
   {
     const auto f = fields(deck, path, item, 5, "plane / Burgers direction / centre / length / character");
     FrankReadSource source;
-    source.plane           = read_miller(deck, path, f[0]);
+    source.plane = read_miller(deck, path, f[0]);
     const Miller direction = read_miller(deck, path, f[1]);
-    source.burgers         = read_burgers(deck, path, p, direction);
+    source.burgers = read_burgers(deck, path, p, direction);
     if (dot(source.plane, direction) != 0)
       deck.reject(path, "b . n is not zero: [" + to_string(direction) + "] does not lie in the plane (" +
-                          to_string(source.plane) + ")");
+                            to_string(source.plane) + ")");
     if (!p.slip_systems().find(source.burgers, source.plane))
       deck.reject(path, "(" + to_string(source.plane) + ") is not a {111} plane of this fcc crystal");
-    source.centre          = to_vec3(field_numbers(deck, path, f[2], 3)) * units::metre;
-    source.length          = field_numbers(deck, path, f[3], 1)[0] * units::metre;
+    source.centre = to_vec3(field_numbers(deck, path, f[2], 3)) * units::metre;
+    source.length = field_numbers(deck, path, f[3], 1)[0] * units::metre;
     source.character_angle = field_numbers(deck, path, f[4], 1)[0];
     if (source.length <= 0)
       deck.reject(path, "the length of a source must be positive");
@@ -207,10 +209,10 @@ void read_loops(const InputDeck &deck, Parameters &p)
   {
     const auto f = fields(deck, path, item, 5, "plane / Burgers direction / centre / radius / corners");
     PolygonLoop loop;
-    loop.plane           = read_miller(deck, path, f[0]);
-    loop.burgers         = read_burgers(deck, path, p, read_miller(deck, path, f[1]));
-    loop.centre          = to_vec3(field_numbers(deck, path, f[2], 3)) * units::metre;
-    loop.radius          = field_numbers(deck, path, f[3], 1)[0] * units::metre;
+    loop.plane = read_miller(deck, path, f[0]);
+    loop.burgers = read_burgers(deck, path, p, read_miller(deck, path, f[1]));
+    loop.centre = to_vec3(field_numbers(deck, path, f[2], 3)) * units::metre;
+    loop.radius = field_numbers(deck, path, f[3], 1)[0] * units::metre;
     const double corners = field_numbers(deck, path, f[4], 1)[0];
     if (loop.radius <= 0 || corners < 3 || corners > 1000 || corners != std::floor(corners))
       deck.reject(path, "a loop needs a positive radius and 3 to 1000 corners");
@@ -233,11 +235,12 @@ void read_microstructure(const InputDeck &deck, Parameters &p)
 
 void read_discretisation(const InputDeck &deck, Parameters &p)
 {
-  auto &t            = p.topology;
-  t.min_segment      = deck.number("Discretisation/Minimum segment") * units::metre;
-  t.max_segment      = deck.number("Discretisation/Maximum segment") * units::metre;
+  auto &t = p.topology;
+  t.min_segment = deck.number("Discretisation/Minimum segment") * units::metre;
+  t.max_segment = deck.number("Discretisation/Maximum segment") * units::metre;
   t.collision_radius = number_or(deck, "Discretisation/Collision radius", units::metre, t.min_segment / 8);
-  t.min_area = number_or(deck, "Discretisation/Minimum area", units::metre * units::metre, 0.01 * t.min_segment * t.min_segment);
+  t.min_area =
+      number_or(deck, "Discretisation/Minimum area", units::metre * units::metre, 0.01 * t.min_segment * t.min_segment);
   if (t.max_segment < 2 * t.min_segment)
     deck.reject("Discretisation/Maximum segment", "must be at least twice the minimum segment");
   if (t.min_segment < 2 * p.medium.a)
@@ -250,19 +253,19 @@ void read_discretisation(const InputDeck &deck, Parameters &p)
 
 void read_time_stepping(const InputDeck &deck, Parameters &p)
 {
-  auto &i            = p.integrator;
-  i.error_tolerance  = number_or(deck, "Time stepping/Position tolerance", units::metre, p.topology.min_segment / 50);
+  auto &i = p.integrator;
+  i.error_tolerance = number_or(deck, "Time stepping/Position tolerance", units::metre, p.topology.min_segment / 50);
   i.max_displacement = number_or(deck, "Time stepping/Maximum displacement", units::metre, p.topology.min_segment / 2);
-  i.max_step         = deck.number("Time stepping/Maximum step") * units::second;
-  i.initial_step     = deck.number("Time stepping/Initial step") * units::second;
-  i.max_stages       = deck.integer("Time stepping/Maximum stages");
+  i.max_step = deck.number("Time stepping/Maximum step") * units::second;
+  i.initial_step = deck.number("Time stepping/Initial step") * units::second;
+  i.max_stages = deck.integer("Time stepping/Maximum stages");
   if (i.initial_step > i.max_step)
     deck.reject("Time stepping/Initial step", "must not exceed the maximum step");
-  p.stop.final_time           = deck.number("Time stepping/Final time") * units::second;
-  p.stop.max_steps            = deck.integer("Time stepping/Maximum steps");
-  p.stop.final_strain         = deck.number("Time stepping/Final strain");
+  p.stop.final_time = deck.number("Time stepping/Final time") * units::second;
+  p.stop.max_steps = deck.integer("Time stepping/Maximum steps");
+  p.stop.final_strain = deck.number("Time stepping/Final strain");
   p.stop.final_plastic_strain = deck.number("Time stepping/Final plastic strain");
-  p.stop.equilibrium_speed    = deck.number("Time stepping/Equilibrium speed") * units::metre_per_second;
+  p.stop.equilibrium_speed = deck.number("Time stepping/Equilibrium speed") * units::metre_per_second;
   p.output = {deck.integer("Output/History interval"), deck.integer("Output/Frame interval"),
               deck.flag("Output/Check network")};
 }

@@ -38,9 +38,9 @@ struct GrainParameters
   fem::MeshParameters mesh;
   fem::ElasticProblem::Parameters elasticity;
   std::string fixed_face, platen_face; ///< names; empty: the lowest and highest along z
-  bool clamped                   = true;
+  bool clamped = true;
   std::vector<std::string> impenetrable_faces;
-  ReferenceState reference   = ReferenceState::relaxed;
+  ReferenceState reference = ReferenceState::relaxed;
   RayDirection ray_direction = RayDirection::normal;
 };
 
@@ -53,27 +53,27 @@ enum class LoadingType
 
 struct LoadingParameters
 {
-  LoadingType type      = LoadingType::none;
-  Vec3 axis             = Vec3::UnitZ();
-  double strain_rate    = 0;                 ///< 1/ns
-  SymTensor stress      = SymTensor::Zero(); ///< MPa
+  LoadingType type = LoadingType::none;
+  Vec3 axis = Vec3::UnitZ();
+  double strain_rate = 0;                    ///< 1/ns
+  SymTensor stress = SymTensor::Zero();      ///< MPa
   SymTensor stress_rate = SymTensor::Zero(); ///< MPa/ns
 };
 
 struct StopCriteria
 {
-  double final_time           = 0; ///< ns
-  unsigned max_steps          = 0;
-  double final_strain         = 0; ///< 0: not used, as below
+  double final_time = 0; ///< ns
+  unsigned max_steps = 0;
+  double final_strain = 0; ///< 0: not used, as below
   double final_plastic_strain = 0;
-  double equilibrium_speed    = 0; ///< nm/ns
+  double equilibrium_speed = 0; ///< nm/ns
 };
 
 struct OutputParameters
 {
   unsigned history_interval = 1;
-  unsigned frame_interval   = 50;
-  bool check_network        = true;
+  unsigned frame_interval = 50;
+  bool check_network = true;
 };
 
 struct Parameters
@@ -92,15 +92,12 @@ struct Parameters
   std::string network_file; ///< absolute; empty: none
   TopologySettings topology;
   double core_cutoff_radius = 0; ///< nm
-  double pair_tolerance     = 0;
+  double pair_tolerance = 0;
   IntegratorSettings integrator;
   StopCriteria stop;
   OutputParameters output;
 
-  ForceSettings force_settings() const
-  {
-    return {medium, core_cutoff_radius, pair_tolerance, grain.ray_direction};
-  }
+  ForceSettings force_settings() const { return {medium, core_cutoff_radius, pair_tolerance, grain.ray_direction}; }
   SlipSystems slip_systems() const { return {Lattice::fcc, lattice_parameter, orientation}; }
 };
 

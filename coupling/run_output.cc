@@ -40,10 +40,13 @@ template <class Range, class F> std::string lines_of(const Range &range, F &&f)
 std::string points_of_segments(const Network &network)
 {
   // Two points per segment: in a periodic cell the end of a line may be another image of its node.
-  return lines_of(network.segments(), [&](std::ostream &o, const SegmentIndex s) {
-    const Vec3 a = network.position(network.start(s)) / units::metre, b = a + network.direction(s) / units::metre;
-    o << a.transpose() << "\n" << b.transpose();
-  });
+  return lines_of(network.segments(),
+                  [&](std::ostream &o, const SegmentIndex s)
+                  {
+                    const Vec3 a = network.position(network.start(s)) / units::metre,
+                               b = a + network.direction(s) / units::metre;
+                    o << a.transpose() << "\n" << b.transpose();
+                  });
 }
 
 void write_cells(std::ostream &out, const std::size_t n)
@@ -63,11 +66,11 @@ void write_cells(std::ostream &out, const std::size_t n)
 }
 
 constexpr const char *history_header =
-  "step,time [s],dt [s],strain [-],stress [Pa],axial plastic strain [-],plastic strain xx [-],plastic strain yy [-],"
-  "plastic strain zz [-],plastic strain xy [-],plastic strain xz [-],plastic strain yz [-],line length [m],"
-  "dislocation density [1/m^2],segments,nodes,junction nodes,surface nodes,collisions,surface exits,"
-  "reaction fixed face [N],reaction platen [N],FEM iterations,force imbalance [-],moment imbalance [-],"
-  "integrator stages,max speed [m/s],wall time [s]\n";
+    "step,time [s],dt [s],strain [-],stress [Pa],axial plastic strain [-],plastic strain xx [-],plastic strain yy [-],"
+    "plastic strain zz [-],plastic strain xy [-],plastic strain xz [-],plastic strain yz [-],line length [m],"
+    "dislocation density [1/m^2],segments,nodes,junction nodes,surface nodes,collisions,surface exits,"
+    "reaction fixed face [N],reaction platen [N],FEM iterations,force imbalance [-],moment imbalance [-],"
+    "integrator stages,max speed [m/s],wall time [s]\n";
 } // namespace
 
 void write_file(const std::string &path, const std::string &content)
@@ -96,24 +99,24 @@ void write_network_vtu(const std::string &path, const Network &network)
   write_array(out, "Float64", "", 3, points_of_segments(network));
   out << "</Points>\n";
   write_cells(out, n);
-  const auto both_ends = [&](auto &&value) {
-    return lines_of(segments, [&](std::ostream &o, const SegmentIndex s) {
-      o << value(network.start(s)) << " " << value(network.end(s));
-    });
+  const auto both_ends = [&](auto &&value)
+  {
+    return lines_of(segments, [&](std::ostream &o, const SegmentIndex s)
+                    { o << value(network.start(s)) << " " << value(network.end(s)); });
   };
   out << "<PointData>\n";
   write_array(out, "Int64", "node id", 1, both_ends([&](const NodeIndex i) { return network.id(i); }));
   write_array(out, "Int32", "constraint", 1,
               both_ends([&](const NodeIndex i) { return static_cast<int>(network.constraint(i)); }));
   out << "</PointData>\n<CellData>\n";
-  write_array(out, "Float64", "Burgers vector [m]", 3, lines_of(segments, [&](std::ostream &o, const SegmentIndex s) {
-                o << (network.burgers(s) / units::metre).transpose();
-              }));
+  write_array(out, "Float64", "Burgers vector [m]", 3,
+              lines_of(segments, [&](std::ostream &o, const SegmentIndex s)
+                       { o << (network.burgers(s) / units::metre).transpose(); }));
   write_array(out, "Float64", "plane normal", 3,
               lines_of(segments, [&](std::ostream &o, const SegmentIndex s) { o << network.normal(s).transpose(); }));
-  write_array(out, "Float64", "screw fraction", 1, lines_of(segments, [&](std::ostream &o, const SegmentIndex s) {
-                o << std::abs(network.direction(s).normalized().dot(network.burgers(s).normalized()));
-              }));
+  write_array(out, "Float64", "screw fraction", 1,
+              lines_of(segments, [&](std::ostream &o, const SegmentIndex s)
+                       { o << std::abs(network.direction(s).normalized().dot(network.burgers(s).normalized())); }));
   write_array(out, "Int64", "segment id", 1,
               lines_of(segments, [&](std::ostream &o, const SegmentIndex s) { o << network.id(s); }));
   out << "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
@@ -121,10 +124,10 @@ void write_network_vtu(const std::string &path, const Network &network)
 }
 
 RunOutput::RunOutput(std::string directory, const bool write)
-  : path(std::move(directory))
-  , active(write)
-  // mpirun gives its processes a terminal even when its own output goes to a file.
-  , terminal(write && isatty(STDOUT_FILENO) != 0 && std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr)
+    : path(std::move(directory)), active(write)
+      // mpirun gives its processes a terminal even when its own output goes to a file.
+      ,
+      terminal(write && isatty(STDOUT_FILENO) != 0 && std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr)
 {
   if (!active)
     return;
@@ -147,13 +150,13 @@ void RunOutput::add_history(const HistoryRow &r)
   o << std::setprecision(12);
   const auto put = [&](const auto &value) { o << value << ","; };
   put(r.step), put(r.time / units::second), put(r.dt / units::second), put(r.strain), put(r.stress / units::pascal),
-    put(r.axial_plastic_strain);
+      put(r.axial_plastic_strain);
   for (Eigen::Index c = 0; c < 6; ++c)
     put(r.plastic_strain[c]);
   put(r.line_length / units::metre), put(r.density / units::per_square_metre), put(r.segments), put(r.nodes),
-    put(r.junctions), put(r.surface_nodes), put(r.collisions), put(r.surface_exits),
-    put(r.fixed_reaction / units::newton), put(r.platen_reaction / units::newton), put(r.fem_iterations),
-    put(r.force_imbalance), put(r.moment_imbalance), put(r.stages), put(r.max_speed / units::metre_per_second);
+      put(r.junctions), put(r.surface_nodes), put(r.collisions), put(r.surface_exits),
+      put(r.fixed_reaction / units::newton), put(r.platen_reaction / units::newton), put(r.fem_iterations),
+      put(r.force_imbalance), put(r.moment_imbalance), put(r.stages), put(r.max_speed / units::metre_per_second);
   o << r.wall_time << "\n";
   history << o.str() << std::flush;
   if (!history)
@@ -201,7 +204,8 @@ void RunOutput::add_grain_frame(const double time, const std::string &file)
 void RunOutput::write_collection(const std::string &name, const Frames &frames) const
 {
   std::ostringstream out;
-  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n"
+  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+         "byte_order=\"LittleEndian\">\n<Collection>\n"
       << std::setprecision(12);
   for (const auto &[time, file] : frames)
     out << "<DataSet timestep=\"" << time / units::second << "\" part=\"0\" file=\"" << file << "\"/>\n";

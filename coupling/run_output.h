@@ -16,19 +16,19 @@ namespace ddfem::coupling
 struct HistoryRow
 {
   unsigned step = 0;
-  double time = 0, dt = 0;                        ///< ns
-  double strain = 0, stress = 0;                  ///< nominal, along the loading axis; MPa
-  SymTensor plastic_strain = SymTensor::Zero();   ///< sample frame
+  double time = 0, dt = 0;                      ///< ns
+  double strain = 0, stress = 0;                ///< nominal, along the loading axis; MPa
+  SymTensor plastic_strain = SymTensor::Zero(); ///< sample frame
   double axial_plastic_strain = 0;
-  double line_length = 0, density = 0;            ///< nm, 1/nm^2
+  double line_length = 0, density = 0; ///< nm, 1/nm^2
   std::size_t segments = 0, nodes = 0, junctions = 0, surface_nodes = 0;
   std::size_t collisions = 0, surface_exits = 0;  ///< since the start
   double fixed_reaction = 0, platen_reaction = 0; ///< MPa nm^2, tension positive
   unsigned fem_iterations = 0;
   double force_imbalance = 0, moment_imbalance = 0;
   unsigned stages = 0;
-  double max_speed = 0;                           ///< nm/ns
-  double wall_time = 0;                           ///< s
+  double max_speed = 0; ///< nm/ns
+  double wall_time = 0; ///< s
 };
 
 /// Writes @p content to @p path under a temporary name and renames it. Throws FileAccessError.

@@ -31,7 +31,7 @@ bool interrupted_anywhere(MPI_Comm communicator)
 /// Lothe eq. 6-82 with the core radius as inner cut-off).
 double largest_line_tension(const Parameters &p)
 {
-  const double b    = p.burgers_magnitude;
+  const double b = p.burgers_magnitude;
   const double core = std::min(p.medium.a, p.core_cutoff_radius);
   return p.medium.mu * b * b * (1 + p.medium.nu) / (4 * std::numbers::pi * (1 - p.medium.nu)) *
          std::max(1.0, std::log(2 * p.topology.max_segment / core));
@@ -46,11 +46,8 @@ void install_signal_handlers()
 }
 
 Simulation::Simulation(const Parameters &p, MPI_Comm comm)
-  : parameters(p)
-  , communicator(comm)
-  , dislocations(build_network(p))
-  , product_plane(product_plane_rule(p.slip_systems()))
-  , integrator(p.integrator)
+    : parameters(p), communicator(comm), dislocations(build_network(p)),
+      product_plane(product_plane_rule(p.slip_systems())), integrator(p.integrator)
 {
   if (p.mode == Mode::finite)
   {
@@ -61,7 +58,7 @@ Simulation::Simulation(const Parameters &p, MPI_Comm comm)
     {
       try
       {
-        swept                = grown_area(dislocations, &finite_grain->shape(), p.grain.ray_direction);
+        swept = grown_area(dislocations, &finite_grain->shape(), p.grain.ray_direction);
         total_plastic_strain = plastic_strain_volume(swept) / finite_grain->volume();
         swept.clear();
       }
@@ -95,10 +92,10 @@ LineSystem Simulation::closed_line_system()
 ForceEnvironment Simulation::environment()
 {
   ForceEnvironment e;
-  e.applied    = applied_stress();
-  e.shape      = finite_grain ? &finite_grain->shape() : nullptr;
-  e.cell       = images ? &parameters.cell : nullptr;
-  e.images     = images.get();
+  e.applied = applied_stress();
+  e.shape = finite_grain ? &finite_grain->shape() : nullptr;
+  e.cell = images ? &parameters.cell : nullptr;
+  e.images = images.get();
   e.correction = &correction;
   return e;
 }
@@ -109,7 +106,7 @@ SymTensor Simulation::applied_stress() const
     return SymTensor::Zero();
   if (parameters.loading.type == LoadingType::stress)
     return parameters.loading.stress + time * parameters.loading.stress_rate;
-  const Vec3 &a      = parameters.loading.axis;
+  const Vec3 &a = parameters.loading.axis;
   const double sigma = parameters.medium.youngs_modulus() * (nominal_strain() - axial_plastic_strain());
   return sigma * symmetric_part(a * a.transpose());
 }
@@ -154,8 +151,8 @@ IntegratorStep Simulation::move_lines()
 {
   const Timing::Scope scope(timing, "forces and motion");
   const ForceSettings settings = parameters.force_settings();
-  const ForceEnvironment e     = environment();
-  const auto velocity          = [&](const Network &n) {
+  const ForceEnvironment e = environment();
+  const auto velocity = [&](const Network &n) {
     return glide_velocities(n, compute_nodal_forces(n, settings, e, communicator).total, parameters.mobility, e.shape);
   };
   std::vector<double> drag(dislocations.node_capacity(), 0.0);
@@ -188,11 +185,13 @@ void Simulation::change_topology(TopologyContext &context)
   }
   const SplittingModel model{parameters.medium, parameters.core_cutoff_radius, parameters.mobility};
   // The network has changed since the last solve, but its correction field has not: it is read at the new points.
-  split_nodes(context, model, [&](const Network &n) {
-    if (finite_grain)
-      correction = finite_grain->correction_stress(segment_points(n));
-    return compute_nodal_forces(n, parameters.force_settings(), environment(), communicator);
-  });
+  split_nodes(context, model,
+              [&](const Network &n)
+              {
+                if (finite_grain)
+                  correction = finite_grain->correction_stress(segment_points(n));
+                return compute_nodal_forces(n, parameters.force_settings(), environment(), communicator);
+              });
   remesh(context);
   if (dislocations.node_capacity() > 2 * dislocations.n_nodes() + 64)
     dislocations.clean();
@@ -241,7 +240,7 @@ RunEnd Simulation::run(RunOutput &output)
   report(output, step, false);
   while (!must_stop(step))
   {
-    step                    = move_lines();
+    step = move_lines();
     TopologyContext context = topology_context(step.displacement);
     change_topology(context);
     book();

@@ -9,8 +9,9 @@
 #include "dd/forces/nodal_forces.h"
 #include "dd/topology/topology_context.h"
 
-#include <memory>
 #include <mpi.h>
+
+#include <memory>
 #include <string>
 
 namespace ddfem::coupling
@@ -85,8 +86,8 @@ private:
   SweptArea swept;
   TopologyCounts counts;
   SymTensor total_plastic_strain = SymTensor::Zero();
-  double time           = 0; ///< ns
-  unsigned step_number  = 0;
+  double time = 0; ///< ns
+  unsigned step_number = 0;
   Timing timing;
 };
 

@@ -1,6 +1,5 @@
 // What a simulation says about itself: history, frames, status line, summary.
 #include "coupling/simulation.h"
-
 #include "dd/common/units.h"
 
 #include <cmath>
@@ -23,34 +22,34 @@ std::string clock(const double seconds)
 HistoryRow Simulation::history_row(const IntegratorStep &step) const
 {
   HistoryRow r;
-  r.step                 = step_number;
-  r.time                 = time;
-  r.dt                   = step.dt;
-  r.strain               = nominal_strain();
-  r.plastic_strain       = total_plastic_strain;
+  r.step = step_number;
+  r.time = time;
+  r.dt = step.dt;
+  r.strain = nominal_strain();
+  r.plastic_strain = total_plastic_strain;
   r.axial_plastic_strain = axial_plastic_strain();
   for (const SegmentIndex s : dislocations.segments())
     r.line_length += dislocations.length(s);
-  r.density  = r.line_length / reference_volume();
+  r.density = r.line_length / reference_volume();
   r.segments = dislocations.n_segments();
-  r.nodes    = dislocations.n_nodes();
+  r.nodes = dislocations.n_nodes();
   for (const NodeIndex i : dislocations.nodes())
   {
     r.junctions += dislocations.degree(i) > 2 ? 1 : 0;
     r.surface_nodes += dislocations.constraint(i) == NodeConstraint::surface ? 1 : 0;
   }
-  r.collisions    = counts.collisions;
+  r.collisions = counts.collisions;
   r.surface_exits = counts.surface_exits;
-  r.stages        = step.stages;
-  r.max_speed     = step.max_speed;
-  r.wall_time     = timing.elapsed();
+  r.stages = step.stages;
+  r.max_speed = step.max_speed;
+  r.wall_time = timing.elapsed();
   if (finite_grain)
   {
-    r.stress          = solution.platen_reaction / finite_grain->section();
-    r.fixed_reaction  = solution.fixed_reaction;
+    r.stress = solution.platen_reaction / finite_grain->section();
+    r.fixed_reaction = solution.fixed_reaction;
     r.platen_reaction = solution.platen_reaction;
-    r.fem_iterations  = solution.solve.iterations;
-    r.force_imbalance  = solution.force_imbalance;
+    r.fem_iterations = solution.solve.iterations;
+    r.force_imbalance = solution.force_imbalance;
     r.moment_imbalance = solution.moment_imbalance;
   }
   else
@@ -80,7 +79,7 @@ void Simulation::report(RunOutput &output, const IntegratorStep &step, const boo
   if (step_number % parameters.output.history_interval == 0 || last)
     output.add_history(history_row(step));
   const unsigned interval = parameters.output.frame_interval;
-  const bool frame        = last || step_number == 0 || (interval > 0 && step_number % interval == 0);
+  const bool frame = last || step_number == 0 || (interval > 0 && step_number % interval == 0);
   if (frame)
   {
     output.add_network_frame(step_number, time, dislocations);
@@ -119,9 +118,9 @@ std::string Simulation::summary() const
   else
     out << "volume      " << reference_volume() << " nm^3\n";
   const SlipSystems systems = parameters.slip_systems();
-  const Vec3 axis           = finite_grain ? finite_grain->loading_axis() : parameters.loading.axis;
-  out << "loading     along (" << axis.transpose() << "), largest Schmid factor "
-      << systems.largest_schmid_factor(axis) << "\n";
+  const Vec3 axis = finite_grain ? finite_grain->loading_axis() : parameters.loading.axis;
+  out << "loading     along (" << axis.transpose() << "), largest Schmid factor " << systems.largest_schmid_factor(axis)
+      << "\n";
   return out.str();
 }
 } // namespace ddfem::coupling

@@ -14,8 +14,9 @@ double seconds_since(const std::chrono::steady_clock::time_point &t)
 } // namespace
 
 Timing::Scope::Scope(Timing &owner, std::string name)
-  : timing(owner), section(std::move(name)), start(std::chrono::steady_clock::now())
-{}
+    : timing(owner), section(std::move(name)), start(std::chrono::steady_clock::now())
+{
+}
 
 Timing::Scope::~Scope()
 {
@@ -35,7 +36,8 @@ std::string Timing::table() const
   for (const auto &[name, s] : seconds)
     out << std::left << std::setw(34) << name << std::right << std::setw(10) << std::setprecision(2) << s << " s"
         << std::setw(8) << std::setprecision(1) << 100 * s / total << " %\n";
-  out << std::left << std::setw(34) << "total" << std::right << std::setw(10) << std::setprecision(2) << total << " s\n";
+  out << std::left << std::setw(34) << "total" << std::right << std::setw(10) << std::setprecision(2) << total
+      << " s\n";
   return out.str();
 }
 } // namespace ddfem::coupling

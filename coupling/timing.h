@@ -17,7 +17,7 @@ public:
   public:
     Scope(Timing &owner, std::string name);
     ~Scope();
-    Scope(const Scope &)            = delete;
+    Scope(const Scope &) = delete;
     Scope &operator=(const Scope &) = delete;
 
   private:

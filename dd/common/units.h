@@ -3,7 +3,7 @@
 
 namespace ddfem::units
 {
-inline constexpr double metre  = 1e9;  ///< nm per m
+inline constexpr double metre = 1e9;   ///< nm per m
 inline constexpr double second = 1e9;  ///< ns per s
 inline constexpr double pascal = 1e-6; ///< MPa per Pa
 /// MPa nm^2 per N: 1 N = 1 Pa m^2 = 1e-6 MPa * 1e18 nm^2.

@@ -14,12 +14,9 @@ inline const char *name_of(Lattice lattice)
 {
   switch (lattice)
   {
-    case Lattice::fcc:
-      return "fcc";
-    case Lattice::bcc:
-      return "bcc";
-    case Lattice::hcp:
-      return "hcp";
+    case Lattice::fcc: return "fcc";
+    case Lattice::bcc: return "bcc";
+    case Lattice::hcp: return "hcp";
   }
   return "unknown";
 }

@@ -34,15 +34,15 @@ IsotropicAverage voigt_average(Lattice lattice, const SingleCrystalStiffness &c)
 struct Material
 {
   std::string name;
-  Lattice lattice          = Lattice::fcc;
-  double lattice_parameter = 0;           ///< a, nm
-  std::optional<double> c_over_a;         ///< hcp only
-  double burgers_magnitude = 0;           ///< nm: a/sqrt(2) fcc, a sqrt(3)/2 bcc, a hcp
-  SingleCrystalStiffness stiffness;       ///< MPa
-  double mu = 0;                          ///< isotropic shear modulus, MPa; Voigt average of the stiffnesses
-  double nu = 0;                          ///< isotropic Poisson's ratio; same
-  double drag = 0;                        ///< glide drag coefficient B, MPa ns (1 MPa ns = 1e-3 Pa s)
-  double mass_density_kg_per_m3 = 0;      ///< kg/m^3
+  Lattice lattice = Lattice::fcc;
+  double lattice_parameter = 0;      ///< a, nm
+  std::optional<double> c_over_a;    ///< hcp only
+  double burgers_magnitude = 0;      ///< nm: a/sqrt(2) fcc, a sqrt(3)/2 bcc, a hcp
+  SingleCrystalStiffness stiffness;  ///< MPa
+  double mu = 0;                     ///< isotropic shear modulus, MPa; Voigt average of the stiffnesses
+  double nu = 0;                     ///< isotropic Poisson's ratio; same
+  double drag = 0;                   ///< glide drag coefficient B, MPa ns (1 MPa ns = 1e-3 Pa s)
+  double mass_density_kg_per_m3 = 0; ///< kg/m^3
   std::string lattice_source;
   std::string elasticity_source;
   std::string drag_source; ///< says so where the value is an order of magnitude only

@@ -41,9 +41,7 @@ public:
   Vec3 unit_vector(const Miller &m) const { return rotation_ * to_vector(m).normalized(); }
 
 private:
-  explicit Orientation(const Mat3 &rotation)
-    : rotation_(rotation)
-  {}
+  explicit Orientation(const Mat3 &rotation) : rotation_(rotation) {}
   Mat3 rotation_ = Mat3::Identity();
 };
 } // namespace ddfem

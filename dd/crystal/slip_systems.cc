@@ -18,12 +18,9 @@ double burgers_length(Lattice lattice, double lattice_parameter)
                                 " nm; it must be positive.");
   switch (lattice)
   {
-    case Lattice::fcc:
-      return lattice_parameter / std::sqrt(2.0);
-    case Lattice::bcc:
-      return lattice_parameter * std::sqrt(3.0) / 2;
-    case Lattice::hcp:
-      break;
+    case Lattice::fcc: return lattice_parameter / std::sqrt(2.0);
+    case Lattice::bcc: return lattice_parameter * std::sqrt(3.0) / 2;
+    case Lattice::hcp: break;
   }
   throw std::invalid_argument("Slip systems are tabulated for fcc and bcc crystals, not for hcp.");
 }
@@ -67,8 +64,7 @@ double SlipSystem::schmid_factor(const Vec3 &axis) const
 }
 
 SlipSystems::SlipSystems(Lattice lattice, double lattice_parameter, const Orientation &orientation)
-  : orientation_(orientation)
-  , burgers_magnitude_(burgers_length(lattice, lattice_parameter))
+    : orientation_(orientation), burgers_magnitude_(burgers_length(lattice, lattice_parameter))
 {
   if (lattice == Lattice::fcc)
     add_fcc();
@@ -79,13 +75,13 @@ SlipSystems::SlipSystems(Lattice lattice, double lattice_parameter, const Orient
 void SlipSystems::add(std::size_t plane, const Miller &direction, const std::string &schmid_boas)
 {
   SlipSystem system;
-  system.plane        = plane;
+  system.plane = plane;
   system.plane_miller = planes_[plane].miller;
-  system.direction    = direction;
-  system.name         = "(" + to_string(system.plane_miller) + ")[" + to_string(direction) + "]";
-  system.schmid_boas  = schmid_boas;
-  system.normal       = planes_[plane].normal;
-  system.burgers      = burgers_magnitude_ * orientation_.unit_vector(direction);
+  system.direction = direction;
+  system.name = "(" + to_string(system.plane_miller) + ")[" + to_string(direction) + "]";
+  system.schmid_boas = schmid_boas;
+  system.normal = planes_[plane].normal;
+  system.burgers = burgers_magnitude_ * orientation_.unit_vector(direction);
   systems_.push_back(std::move(system));
 }
 

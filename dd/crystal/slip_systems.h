@@ -27,7 +27,7 @@ struct SlipSystem
   Miller direction{};          ///< Miller direction of the Burgers vector, crystal frame
   std::string name;            ///< such as "(1-11)[110]"
   std::string schmid_boas;     ///< such as "D6" (fcc); empty for other lattices
-  Vec3 normal  = Vec3::Zero(); ///< unit, sample frame
+  Vec3 normal = Vec3::Zero();  ///< unit, sample frame
   Vec3 burgers = Vec3::Zero(); ///< nm, sample frame
 
   /// Symmetric Schmid tensor sym(b x n)/|b|; its double contraction with a stress is the resolved shear stress.
@@ -43,7 +43,7 @@ struct SlipSystem
 struct SlipSystemMatch
 {
   std::size_t system = 0;
-  int burgers_sign   = 1; ///< +1 if b is that of the system, -1 if opposite
+  int burgers_sign = 1; ///< +1 if b is that of the system, -1 if opposite
 };
 
 /// The slip systems of a lattice in a given orientation.
@@ -85,8 +85,7 @@ private:
   void add(std::size_t plane, const Miller &direction, const std::string &schmid_boas);
   void add_fcc();
   void add_bcc();
-  template <class IsPlane>
-  std::optional<SlipSystemMatch> find_if(const Vec3 &burgers, IsPlane &&is_plane) const;
+  template <class IsPlane> std::optional<SlipSystemMatch> find_if(const Vec3 &burgers, IsPlane &&is_plane) const;
 
   Orientation orientation_;
   double burgers_magnitude_ = 0;

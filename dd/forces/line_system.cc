@@ -11,12 +11,12 @@ namespace ddfem
 {
 LineSystem::LineSystem(const IsotropicMedium &medium_, const Network &network, const GrainShape *shape,
                        const RayDirection rule, const PeriodicCell *cell_, PeriodicImages *images_)
-  : elastic_medium(medium_), shifts{Vec3::Zero()}, periodic_cell(cell_), images(images_)
+    : elastic_medium(medium_), shifts{Vec3::Zero()}, periodic_cell(cell_), images(images_)
 {
   straight_lines.reserve(network.n_segments());
   for (const SegmentIndex s : network.segments())
   {
-    Vec3 start   = network.position(network.start(s));
+    Vec3 start = network.position(network.start(s));
     const Vec3 t = network.direction(s);
     if (periodic_cell)
       start += periodic_cell->shift_into_cell(start + 0.5 * t);
@@ -45,7 +45,7 @@ void LineSystem::close(const OpenLines &open)
 
 SymTensor LineSystem::stress(const Vec3 &point) const
 {
-  const Vec3 x  = periodic_cell ? Vec3(point + periodic_cell->shift_into_cell(point)) : point;
+  const Vec3 x = periodic_cell ? Vec3(point + periodic_cell->shift_into_cell(point)) : point;
   SymTensor sum = SymTensor::Zero();
   for (const StraightLine &l : straight_lines)
     for (const Vec3 &shift : shifts)

@@ -26,12 +26,12 @@ SegmentForces &slot(Contributions &c, const ForceContribution which)
 template <class StressAtPoint> SegmentForces force_of_field(const StraightLine &line, StressAtPoint &&stress)
 {
   const GaussRule rule = gauss_rule(static_cast<int>(n_segment_points));
-  const Vec3 t          = line.end - line.start;
+  const Vec3 t = line.end - line.start;
   SegmentForces f{Vec3::Zero(), Vec3::Zero()};
   for (std::size_t q = 0; q < n_segment_points; ++q)
   {
     const double s = rule.points[q];
-    const Vec3 df  = rule.weights[q] * contract(stress(q, Vec3(line.start + s * t)), line.burgers).cross(t);
+    const Vec3 df = rule.weights[q] * contract(stress(q, Vec3(line.start + s * t)), line.burgers).cross(t);
     f.start += (1 - s) * df;
     f.end += s * df;
   }
@@ -45,52 +45,52 @@ Contributions segment_contributions(const LineSystem &system, const std::size_t 
   Contributions c;
   c.fill({Vec3::Zero(), Vec3::Zero()});
   const StraightLine &line = system.lines()[i];
-  const auto &medium       = settings.medium;
+  const auto &medium = settings.medium;
 
   slot(c, ForceContribution::applied) =
-    force_of_field(line, [&](std::size_t, const Vec3 &) -> const SymTensor & { return environment.applied; });
+      force_of_field(line, [&](std::size_t, const Vec3 &) -> const SymTensor & { return environment.applied; });
   slot(c, ForceContribution::self) = self_force(medium, line.start, line.end, line.burgers);
   slot(c, ForceContribution::core) =
-    core_force(medium, CoreEnergy{settings.core_cutoff_radius}, line.start, line.end, line.burgers);
+      core_force(medium, CoreEnergy{settings.core_cutoff_radius}, line.start, line.end, line.burgers);
 
   for (std::size_t j = 0; j < system.lines().size(); ++j)
     for (std::size_t k = 0; k < system.image_shifts().size(); ++k)
     {
       if (j == i && k == 0)
         continue;
-      const Vec3 &shift         = system.image_shifts()[k];
+      const Vec3 &shift = system.image_shifts()[k];
       const StraightLine &other = system.lines()[j];
       slot(c, k == 0 ? ForceContribution::pairs : ForceContribution::images) +=
-        segment_force(medium, other.start + shift, other.end + shift, other.burgers, line.start, line.end,
-                      line.burgers, settings.pair_tolerance);
+          segment_force(medium, other.start + shift, other.end + shift, other.burgers, line.start, line.end,
+                        line.burgers, settings.pair_tolerance);
     }
   for (const VirtualRay &ray : system.rays())
-    slot(c, ForceContribution::rays) +=
-      segment_force_from_ray(medium, ray.origin, ray.direction, ray.burgers, line.start, line.end, line.burgers,
-                             settings.pair_tolerance);
+    slot(c, ForceContribution::rays) += segment_force_from_ray(
+        medium, ray.origin, ray.direction, ray.burgers, line.start, line.end, line.burgers, settings.pair_tolerance);
   if (system.far_images())
     slot(c, ForceContribution::images) +=
-      force_of_field(line, [&](std::size_t, const Vec3 &x) { return system.far_images()->far_stress(x); });
+        force_of_field(line, [&](std::size_t, const Vec3 &x) { return system.far_images()->far_stress(x); });
   if (environment.correction && !environment.correction->empty())
     slot(c, ForceContribution::correction) =
-      force_of_field(line, [&](const std::size_t q, const Vec3 &) -> const SymTensor & {
-        return (*environment.correction)[i * n_segment_points + q];
-      });
+        force_of_field(line,
+                       [&](const std::size_t q, const Vec3 &) -> const SymTensor &
+                       { return (*environment.correction)[i * n_segment_points + q]; });
   return c;
 }
 
 /// Sums the segments' end forces at the nodes, in the fixed order of each node's arms.
-template <class EndForces>
-std::vector<Vec3> gather_at_nodes(const Network &network, EndForces &&end_forces)
+template <class EndForces> std::vector<Vec3> gather_at_nodes(const Network &network, EndForces &&end_forces)
 {
   std::vector<Vec3> force(network.node_capacity(), Vec3::Zero());
-  network.for_each_node_with_segments([&](const NodeIndex i, std::span<const SegmentIndex> arms) {
-    for (const SegmentIndex s : arms)
-    {
-      const SegmentForces &f = end_forces(s);
-      force[i.value] += network.start(s) == i ? f.start : f.end;
-    }
-  });
+  network.for_each_node_with_segments(
+      [&](const NodeIndex i, std::span<const SegmentIndex> arms)
+      {
+        for (const SegmentIndex s : arms)
+        {
+          const SegmentForces &f = end_forces(s);
+          force[i.value] += network.start(s) == i ? f.start : f.end;
+        }
+      });
   return force;
 }
 } // namespace
@@ -137,11 +137,11 @@ NodalForces compute_nodal_forces(const Network &network, const ForceSettings &se
     ++position;
   }
   forces.total = gather_at_nodes(
-    network, [&](const SegmentIndex s) -> const SegmentForces & { return forces.segment_ends[s.value]; });
+      network, [&](const SegmentIndex s) -> const SegmentForces & { return forces.segment_ends[s.value]; });
   if (with_contributions)
     for (std::size_t c = 0; c < n_force_contributions; ++c)
       forces.by_contribution[c] = gather_at_nodes(
-        network, [&](const SegmentIndex s) -> const SegmentForces & { return by_line[line_of[s.value]][c]; });
+          network, [&](const SegmentIndex s) -> const SegmentForces & { return by_line[line_of[s.value]][c]; });
   return forces;
 }
 } // namespace ddfem

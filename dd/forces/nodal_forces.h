@@ -47,10 +47,10 @@ struct ForceSettings
 /// External fields and surroundings of the network.
 struct ForceEnvironment
 {
-  SymTensor applied                    = SymTensor::Zero(); ///< uniform, MPa
-  const GrainShape *shape              = nullptr;           ///< finite grain
-  const PeriodicCell *cell             = nullptr;
-  PeriodicImages *images               = nullptr;
+  SymTensor applied = SymTensor::Zero(); ///< uniform, MPa
+  const GrainShape *shape = nullptr;     ///< finite grain
+  const PeriodicCell *cell = nullptr;
+  PeriodicImages *images = nullptr;
   const SegmentPointStress *correction = nullptr; ///< empty pointer: none
 };
 

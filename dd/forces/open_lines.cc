@@ -14,7 +14,8 @@ std::vector<bool> nodes_of_open_lines(const Network &network)
 {
   std::vector<bool> marked(network.node_capacity(), false);
   std::vector<NodeIndex> stack;
-  const auto visit = [&](const NodeIndex i) {
+  const auto visit = [&](const NodeIndex i)
+  {
     if (!marked[i.value])
       stack.push_back(i);
     marked[i.value] = true;
@@ -46,8 +47,8 @@ OpenLines open_lines(const Network &network, const GrainShape *shape, const RayD
   if (shape)
     for (const NodeIndex i : network.nodes())
       if (marked[i.value] && network.constraint(i) == NodeConstraint::surface)
-        open.rays.push_back({network.position(i), ray_direction(*shape, rule, network.position(i)),
-                             ray_burgers(network, i)});
+        open.rays.push_back(
+            {network.position(i), ray_direction(*shape, rule, network.position(i)), ray_burgers(network, i)});
   return open;
 }
 } // namespace ddfem

@@ -36,13 +36,14 @@ double BoxShape::signed_distance(const Vec3 &x) const
 
 int BoxShape::face(const Vec3 &x) const
 {
-  int best         = 0;
-  double distance  = -std::numeric_limits<double>::infinity();
-  const auto check = [&](const int id, const double d) {
+  int best = 0;
+  double distance = -std::numeric_limits<double>::infinity();
+  const auto check = [&](const int id, const double d)
+  {
     if (d > distance)
     {
       distance = d;
-      best     = id;
+      best = id;
     }
   };
   for (int c = 0; c < 3; ++c)
@@ -56,8 +57,8 @@ int BoxShape::face(const Vec3 &x) const
 Vec3 BoxShape::outward_normal(const Vec3 &x) const
 {
   const int id = face(x);
-  Vec3 n       = Vec3::Zero();
-  n[id / 2]    = id % 2 == 0 ? -1.0 : 1.0;
+  Vec3 n = Vec3::Zero();
+  n[id / 2] = id % 2 == 0 ? -1.0 : 1.0;
   return n;
 }
 
@@ -67,7 +68,7 @@ double BoxShape::volume() const
 }
 
 CylinderShape::CylinderShape(const Vec3 &base_, const double radius_, const double height_)
-  : base(base_), radius(radius_), height(height_)
+    : base(base_), radius(radius_), height(height_)
 {
   if (radius <= 0 || height <= 0)
     throw std::invalid_argument("a cylinder needs a positive radius and height");
@@ -81,7 +82,7 @@ double CylinderShape::signed_distance(const Vec3 &x) const
 
 int CylinderShape::face(const Vec3 &x) const
 {
-  const Vec3 r      = x - base;
+  const Vec3 r = x - base;
   const double side = std::hypot(r[0], r[1]) - radius;
   if (side >= -r[2] && side >= r[2] - height)
     return 0;
@@ -93,7 +94,7 @@ Vec3 CylinderShape::outward_normal(const Vec3 &x) const
   const int id = face(x);
   if (id != 0)
     return {0, 0, id == 1 ? -1.0 : 1.0};
-  const Vec3 r        = x - base;
+  const Vec3 r = x - base;
   const double length = std::hypot(r[0], r[1]);
   return length > 0 ? Vec3(r[0] / length, r[1] / length, 0) : Vec3::UnitX();
 }
@@ -146,7 +147,7 @@ PolyhedronShape::PolyhedronShape(const std::vector<Facet> &facets)
     lower = lower.cwiseMin(x);
     upper = upper.cwiseMax(x);
   }
-  const Vec3 centre      = mean(corners);
+  const Vec3 centre = mean(corners);
   const double tolerance = 1e-6 * (upper - lower).norm();
   for (const Facet &f : facets)
   {
@@ -155,10 +156,12 @@ PolyhedronShape::PolyhedronShape(const std::vector<Facet> &facets)
       area = -area;
     enclosed_volume += area.dot(mean(f.vertices) - centre) / 3;
     const HalfSpace h{area.normalized(), area.normalized().dot(mean(f.vertices)), f.face_id};
-    const bool known = std::any_of(half_spaces.begin(), half_spaces.end(), [&](const HalfSpace &other) {
-      return other.face_id == h.face_id && (other.normal - h.normal).norm() < 1e-6 &&
-             std::abs(other.offset - h.offset) < tolerance;
-    });
+    const bool known = std::any_of(half_spaces.begin(), half_spaces.end(),
+                                   [&](const HalfSpace &other)
+                                   {
+                                     return other.face_id == h.face_id && (other.normal - h.normal).norm() < 1e-6 &&
+                                            std::abs(other.offset - h.offset) < tolerance;
+                                   });
     if (!known)
       half_spaces.push_back(h);
   }
@@ -175,9 +178,9 @@ PolyhedronShape::PolyhedronShape(const std::vector<Facet> &facets)
 
 const PolyhedronShape::HalfSpace &PolyhedronShape::nearest(const Vec3 &x) const
 {
-  return *std::max_element(half_spaces.begin(), half_spaces.end(), [&](const HalfSpace &p, const HalfSpace &q) {
-    return p.normal.dot(x) - p.offset < q.normal.dot(x) - q.offset;
-  });
+  return *std::max_element(half_spaces.begin(), half_spaces.end(),
+                           [&](const HalfSpace &p, const HalfSpace &q)
+                           { return p.normal.dot(x) - p.offset < q.normal.dot(x) - q.offset; });
 }
 
 double PolyhedronShape::signed_distance(const Vec3 &x) const
@@ -198,17 +201,17 @@ int PolyhedronShape::face(const Vec3 &x) const
 
 std::optional<Vec3> project_to_surface(const GrainShape &shape, const Vec3 &x, const Vec3 &plane_normal)
 {
-  Vec3 y                         = x;
-  const double tolerance         = 1e-12 * shape.diameter();
-  constexpr int max_iterations   = 50;
+  Vec3 y = x;
+  const double tolerance = 1e-12 * shape.diameter();
+  constexpr int max_iterations = 50;
   constexpr double parallel_sine = 1e-3;
   for (int i = 0; i < max_iterations; ++i)
   {
     const double phi = shape.signed_distance(y);
     if (std::abs(phi) <= tolerance)
       return y;
-    const Vec3 n       = shape.outward_normal(y);
-    const Vec3 m       = n - n.dot(plane_normal) * plane_normal; // |m| = sine of the angle between plane and face
+    const Vec3 n = shape.outward_normal(y);
+    const Vec3 m = n - n.dot(plane_normal) * plane_normal; // |m| = sine of the angle between plane and face
     const double slope = m.squaredNorm();
     if (slope < parallel_sine * parallel_sine)
       return std::nullopt;

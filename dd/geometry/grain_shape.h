@@ -30,9 +30,9 @@ public:
   virtual Vec3 outward_normal(const Vec3 &x) const = 0;
   /// Id of the face nearest to @p x.
   virtual int face(const Vec3 &x) const = 0;
-  virtual double volume() const         = 0; ///< nm^3
-  virtual Vec3 lower_corner() const     = 0; ///< of the bounding box
-  virtual Vec3 upper_corner() const     = 0;
+  virtual double volume() const = 0;     ///< nm^3
+  virtual Vec3 lower_corner() const = 0; ///< of the bounding box
+  virtual Vec3 upper_corner() const = 0;
 
   /// Length of the bounding box' diagonal, nm: the scale for tolerances.
   double diameter() const { return (upper_corner() - lower_corner()).norm(); }

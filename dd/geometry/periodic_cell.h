@@ -10,7 +10,7 @@ namespace ddfem
 /// Cell [origin, origin + lengths), nm.
 struct PeriodicCell
 {
-  Vec3 origin  = Vec3::Zero();
+  Vec3 origin = Vec3::Zero();
   Vec3 lengths = Vec3::Ones();
 
   /// The image of difference vector @p d with components in [-L/2, L/2].

@@ -22,8 +22,8 @@ struct Chebyshev
     first[1] = 1;
     for (unsigned j = 2; j <= s; ++j)
     {
-      value[j]  = 2 * w0 * value[j - 1] - value[j - 2];
-      first[j]  = 2 * value[j - 1] + 2 * w0 * first[j - 1] - first[j - 2];
+      value[j] = 2 * w0 * value[j - 1] - value[j - 2];
+      first[j] = 2 * value[j - 1] + 2 * w0 * first[j - 1] - first[j - 2];
       second[j] = 4 * first[j - 1] + 2 * w0 * second[j - 1] - second[j - 2];
     }
   }
@@ -76,7 +76,8 @@ Field rkc_step(Network &network, const VelocityFunction &velocity, const Field &
   const double w0 = 1 + damping / (s * s);
   const Chebyshev t(w0, s);
   const double w1 = t.first[s] / t.second[s];
-  const auto b    = [&](unsigned j) {
+  const auto b = [&](unsigned j)
+  {
     j = std::max(j, 2U);
     return t.second[j] / (t.first[j] * t.first[j]);
   };
@@ -88,7 +89,7 @@ Field rkc_step(Network &network, const VelocityFunction &velocity, const Field &
   for (unsigned j = 2; j <= s; ++j)
   {
     const double mu = 2 * b_of(j) * w0 / b_of(j - 1), nu = -b_of(j) / b_of(j - 2 == 0 ? 2 : j - 2);
-    const double mu_h    = 2 * b_of(j) * w1 / b_of(j - 1) * h;
+    const double mu_h = 2 * b_of(j) * w1 / b_of(j - 1) * h;
     const double gamma_h = -(1 - b_of(j - 1) * t.value[j - 1]) * mu_h;
     set_positions(network, y);
     const Field f = velocity(network);
@@ -105,8 +106,8 @@ Field rkc_step(Network &network, const VelocityFunction &velocity, const Field &
 }
 } // namespace
 
-IntegratorStep StabilisedRungeKutta::advance(Network &network, const VelocityFunction &velocity,
-                                             const double stiffness, const double dt_limit)
+IntegratorStep StabilisedRungeKutta::advance(Network &network, const VelocityFunction &velocity, const double stiffness,
+                                             const double dt_limit)
 {
   Field start(network.node_capacity(), Vec3::Zero());
   for (const NodeIndex i : network.nodes())
@@ -115,7 +116,7 @@ IntegratorStep StabilisedRungeKutta::advance(Network &network, const VelocityFun
   const Field f0 = velocity(network);
   check_finite(network, f0);
   step.evaluations = 1;
-  step.max_speed   = max_norm(network, f0);
+  step.max_speed = max_norm(network, f0);
 
   double h = std::min({next_step, settings.max_step, dt_limit, stability_bound(settings.max_stages) / stiffness});
   if (step.max_speed > 0)
@@ -134,17 +135,17 @@ IntegratorStep StabilisedRungeKutta::advance(Network &network, const VelocityFun
       step.displacement[i.value] = end[i.value] - start[i.value];
       error[i.value] = 0.8 * (start[i.value] - end[i.value]) + 0.4 * h * (f0[i.value] + f_end[i.value]);
     }
-    step.error             = max_norm(network, error);
-    const double moved     = max_norm(network, step.displacement);
-    const double by_error  = 0.8 * std::cbrt(settings.error_tolerance / std::max(step.error, 1e-300));
+    step.error = max_norm(network, error);
+    const double moved = max_norm(network, step.displacement);
+    const double by_error = 0.8 * std::cbrt(settings.error_tolerance / std::max(step.error, 1e-300));
     const double by_motion = 0.9 * settings.max_displacement / std::max(moved, 1e-300);
-    const double factor    = std::clamp(std::min(by_error, by_motion), 0.1, 2.0);
-    step.dt                = h;
+    const double factor = std::clamp(std::min(by_error, by_motion), 0.1, 2.0);
+    step.dt = h;
     if (step.error <= settings.error_tolerance && moved <= 1.1 * settings.max_displacement)
     {
       // A step cut short by dt_limit says nothing against the larger one suggested before.
-      next_step = std::min(settings.max_step, h < 0.99 * next_step ? std::max(next_step * std::min(1.0, factor), h * factor)
-                                                                   : h * factor);
+      next_step = std::min(settings.max_step,
+                           h < 0.99 * next_step ? std::max(next_step * std::min(1.0, factor), h * factor) : h * factor);
       break;
     }
     ++step.rejected;
@@ -153,7 +154,8 @@ IntegratorStep StabilisedRungeKutta::advance(Network &network, const VelocityFun
     if (h < smallest)
     {
       std::ostringstream message;
-      message << "the time step fell below " << smallest << " ns: the motion cannot be integrated to the requested error";
+      message << "the time step fell below " << smallest
+              << " ns: the motion cannot be integrated to the requested error";
       throw std::runtime_error(message.str());
     }
   }

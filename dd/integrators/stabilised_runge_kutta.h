@@ -13,21 +13,21 @@ using VelocityFunction = std::function<std::vector<Vec3>(const Network &)>;
 
 struct IntegratorSettings
 {
-  double error_tolerance      = 0.1;  ///< estimated local error of a position, nm
-  double max_displacement     = 5.0;  ///< of any node in one step, nm
-  double max_step             = 1e9;  ///< ns
-  double initial_step         = 1e-3; ///< ns
-  unsigned max_stages         = 30;
+  double error_tolerance = 0.1;  ///< estimated local error of a position, nm
+  double max_displacement = 5.0; ///< of any node in one step, nm
+  double max_step = 1e9;         ///< ns
+  double initial_step = 1e-3;    ///< ns
+  unsigned max_stages = 30;
 };
 
 /// Outcome of one step: the network itself is left where it was, so that topology can move it.
 struct IntegratorStep
 {
-  double dt    = 0.0;              ///< ns
-  double error = 0.0;              ///< nm
+  double dt = 0.0;    ///< ns
+  double error = 0.0; ///< nm
   unsigned stages = 0, evaluations = 0, rejected = 0;
-  std::vector<Vec3> displacement;  ///< nm, by NodeIndex::value
-  double max_speed = 0.0;          ///< at the start of the step, nm/ns
+  std::vector<Vec3> displacement; ///< nm, by NodeIndex::value
+  double max_speed = 0.0;         ///< at the start of the step, nm/ns
 };
 
 /// Second-order Runge-Kutta-Chebyshev method with error control (Sommeijer, Shampine, Verwer, J. Comput. Appl. Math. 88
@@ -37,8 +37,9 @@ class StabilisedRungeKutta
 {
 public:
   explicit StabilisedRungeKutta(const IntegratorSettings &integrator_settings)
-    : settings(integrator_settings), next_step(integrator_settings.initial_step)
-  {}
+      : settings(integrator_settings), next_step(integrator_settings.initial_step)
+  {
+  }
 
   /// Advances by at most @p dt_limit ns. @p stiffness: upper bound of the spectral radius of d(velocity)/d(position), 1/ns.
   /// Throws std::runtime_error if a velocity is not finite or the step shrinks below the smaller of

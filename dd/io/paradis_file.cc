@@ -30,7 +30,8 @@ std::vector<Token> tokens_of(const std::filesystem::path &path)
   for (std::size_t line = 1; std::getline(in, text); ++line)
   {
     std::string word;
-    const auto flush = [&]() {
+    const auto flush = [&]()
+    {
       if (!word.empty())
         tokens.push_back({std::move(word), line});
       word.clear();
@@ -55,11 +56,7 @@ std::vector<Token> tokens_of(const std::filesystem::path &path)
 class Parser
 {
 public:
-  explicit Parser(const std::filesystem::path &path)
-    : tokens_(tokens_of(path))
-  {
-    file_.path = path;
-  }
+  explicit Parser(const std::filesystem::path &path) : tokens_(tokens_of(path)) { file_.path = path; }
 
   File parse()
   {
@@ -82,8 +79,7 @@ private:
     return tokens_[next_++];
   }
 
-  template <class Number>
-  Number number(const std::string &what, const char *allowed)
+  template <class Number> Number number(const std::string &what, const char *allowed)
   {
     const Token &token = take(what);
     const char *begin = token.text.data(), *const end = begin + token.text.size();
@@ -165,8 +161,8 @@ void Parser::parse_entry(const Token &name)
   {
     n_segments_ = integer(name.text);
     if (*n_segments_ != 1)
-      fail(name.line, "numFileSegments is " + std::to_string(*n_segments_) +
-                        "; only files in one piece (1) are understood.");
+      fail(name.line,
+           "numFileSegments is " + std::to_string(*n_segments_) + "; only files in one piece (1) are understood.");
   }
   else if (name.text == "nodeCount")
   {
@@ -206,22 +202,22 @@ void Parser::parse_node()
 {
   const std::string what = "node " + std::to_string(file_.nodes.size() + 1) + " of " + std::to_string(*n_nodes_);
   FileNode node;
-  node.tag  = tag("the tag of " + what);
+  node.tag = tag("the tag of " + what);
   node.line = tokens_[next_ - 1].line;
-  node.position    = vector("the position of " + what);
+  node.position = vector("the position of " + what);
   const int n_arms = integer("the number of arms of " + what);
   if (n_arms < 0 || n_arms > 1000)
     fail(node.line, "the number of arms of node " + to_string(node.tag) + " is " + std::to_string(n_arms) +
-                      "; it must be between 0 and 1000.");
+                        "; it must be between 0 and 1000.");
   node.constraint = integer("the constraint of " + what);
   for (int k = 0; k < n_arms; ++k)
   {
     const std::string arm_name = "arm " + std::to_string(k + 1) + " of node " + to_string(node.tag);
     Arm arm;
-    arm.tag     = tag("the tag of " + arm_name);
-    arm.line    = tokens_[next_ - 1].line;
+    arm.tag = tag("the tag of " + arm_name);
+    arm.line = tokens_[next_ - 1].line;
     arm.burgers = vector("the Burgers vector of " + arm_name);
-    arm.normal  = vector("the normal of " + arm_name);
+    arm.normal = vector("the normal of " + arm_name);
     node.arms.push_back(arm);
   }
   if (!file_.node_of_tag.try_emplace(node.tag, file_.nodes.size()).second)
@@ -235,7 +231,7 @@ void Parser::parse_nodes()
     parse_node();
   if (next_ != tokens_.size())
     fail(tokens_[next_].line, "\"" + tokens_[next_].text + "\" follows the last of the " + std::to_string(*n_nodes_) +
-                                " nodes that nodeCount promises; nothing may follow.");
+                                  " nodes that nodeCount promises; nothing may follow.");
 }
 } // namespace
 

@@ -22,15 +22,15 @@ std::string at_line(const std::filesystem::path &path, std::size_t line, const s
 struct Arm
 {
   Tag tag;
-  Vec3 burgers     = Vec3::Zero(); ///< units of the file, line sense away from the node
-  Vec3 normal      = Vec3::Zero(); ///< as written, any length
+  Vec3 burgers = Vec3::Zero(); ///< units of the file, line sense away from the node
+  Vec3 normal = Vec3::Zero();  ///< as written, any length
   std::size_t line = 0;
 };
 
 struct FileNode
 {
   Tag tag;
-  Vec3 position  = Vec3::Zero(); ///< units of the file
+  Vec3 position = Vec3::Zero(); ///< units of the file
   int constraint = 0;
   std::vector<Arm> arms;
   std::size_t line = 0;

@@ -15,8 +15,8 @@ using Warn = std::function<void(std::size_t line, const std::string &message)>;
 struct Link
 {
   std::size_t start = 0, end = 0; ///< positions in File::nodes
-  Vec3 burgers     = Vec3::Zero(); ///< units of the file
-  Vec3 normal      = Vec3::Zero(); ///< unit; zero for a line without a (usable) glide plane
+  Vec3 burgers = Vec3::Zero();    ///< units of the file
+  Vec3 normal = Vec3::Zero();     ///< unit; zero for a line without a (usable) glide plane
   std::size_t line = 0;
 };
 

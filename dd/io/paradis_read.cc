@@ -17,11 +17,7 @@ using namespace paradis;
 class Groups
 {
 public:
-  explicit Groups(std::size_t n)
-    : parent_(n)
-  {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
+  explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
   std::size_t find(std::size_t i)
   {
     while (parent_[i] != i)
@@ -43,12 +39,11 @@ class Builder
 {
 public:
   Builder(const std::filesystem::path &path, const ParadisReadOptions &options)
-    : options_(options)
-    , file_(parse(path))
-    , warn_([this](std::size_t line, const std::string &message) { warn(line, message); })
-    , links_(links_of(file_, warn_))
-    , links_at_(file_.nodes.size())
-  {}
+      : options_(options), file_(parse(path)),
+        warn_([this](std::size_t line, const std::string &message) { warn(line, message); }),
+        links_(links_of(file_, warn_)), links_at_(file_.nodes.size())
+  {
+  }
 
   ParadisData build();
 
@@ -133,12 +128,12 @@ void Builder::unwrap()
     for (std::size_t next = 0; next < queue.size(); ++next)
       for (const std::size_t k : links_at_[queue[next]])
       {
-        const std::size_t here  = queue[next];
+        const std::size_t here = queue[next];
         const std::size_t there = links_[k].start == here ? links_[k].end : links_[k].start;
         if (placed[there])
           continue;
         position_[there] = position_[here] + data_.network.minimum_image(position_[there] - position_[here]);
-        placed[there]    = true;
+        placed[there] = true;
         queue.push_back(there);
       }
   }
@@ -179,15 +174,15 @@ void Builder::check_lines()
     if (line.norm() < 1e-9 * options_.burgers_magnitude)
       throw FileError(at_line(file_.path, link.line,
                               "nodes " + to_string(file_.nodes[link.start].tag) + " and " +
-                                to_string(file_.nodes[link.end].tag) +
-                                " are at the same place; a connection must have a length."));
+                                  to_string(file_.nodes[link.end].tag) +
+                                  " are at the same place; a connection must have a length."));
     const double rise = line.dot(link.normal) / options_.burgers_magnitude;
     if (std::abs(rise) <= 2 * options_.plane_tolerance)
       continue;
     warn(link.line, "the line from node " + to_string(file_.nodes[link.start].tag) + " to " +
-                      to_string(file_.nodes[link.end].tag) + " leaves its glide plane by " + std::to_string(rise) +
-                      " Burgers magnitudes; at most " + std::to_string(2 * options_.plane_tolerance) +
-                      " is taken for rounding. The segment gets no glide plane.");
+                        to_string(file_.nodes[link.end].tag) + " leaves its glide plane by " + std::to_string(rise) +
+                        " Burgers magnitudes; at most " + std::to_string(2 * options_.plane_tolerance) +
+                        " is taken for rounding. The segment gets no glide plane.");
     link.normal = Vec3::Zero();
   }
 }
@@ -217,10 +212,10 @@ void Builder::assign_planes()
   plane_.resize(links_.size());
   for (const std::vector<std::size_t> &group : members)
     if (!group.empty() && !assign_plane(group))
-      warn(links_[group.front()].line,
-           "the " + std::to_string(group.size()) +
-             " connected segments of the glide plane of this arm are not coplanar to " +
-             std::to_string(options_.plane_tolerance) + " Burgers magnitudes. They get no glide plane.");
+      warn(links_[group.front()].line, "the " + std::to_string(group.size()) +
+                                           " connected segments of the glide plane of this arm are not coplanar to " +
+                                           std::to_string(options_.plane_tolerance) +
+                                           " Burgers magnitudes. They get no glide plane.");
 }
 
 bool Builder::assign_plane(const std::vector<std::size_t> &group)
@@ -258,14 +253,13 @@ void Builder::move_onto_planes()
 
 void Builder::insert_nodes()
 {
-  const auto of_first_domain = [this](const FileNode &node) {
-    return node.tag.first == file_.nodes.front().tag.first && node.tag.second >= 0;
-  };
+  const auto of_first_domain = [this](const FileNode &node)
+  { return node.tag.first == file_.nodes.front().tag.first && node.tag.second >= 0; };
   const bool keep_indices = std::ranges::all_of(file_.nodes, of_first_domain);
   data_.network.reserve(file_.nodes.size(), links_.size());
   for (std::size_t i = 0; i < file_.nodes.size(); ++i)
   {
-    const FileNode &node            = file_.nodes[i];
+    const FileNode &node = file_.nodes[i];
     const NodeConstraint constraint = constraint_of(file_, node, warn_);
     index_.emplace_back();
     if (constraint == NodeConstraint::free && node.arms.empty())

@@ -16,12 +16,9 @@ int code_of(NodeConstraint constraint)
 {
   switch (constraint)
   {
-    case NodeConstraint::free:
-      return 0;
-    case NodeConstraint::pinned:
-      return 7;
-    case NodeConstraint::surface:
-      return 8;
+    case NodeConstraint::free: return 0;
+    case NodeConstraint::pinned: return 7;
+    case NodeConstraint::surface: return 8;
   }
   return 0;
 }
@@ -82,11 +79,11 @@ std::string file_text(const Network &network, double burgers_magnitude, const Ve
 void write_whole(const std::filesystem::path &path, const std::string &text)
 {
   const std::filesystem::path temporary = path.string() + ".tmp";
-  std::FILE *file                       = std::fopen(temporary.c_str(), "w");
+  std::FILE *file = std::fopen(temporary.c_str(), "w");
   if (file == nullptr)
     throw FileError(temporary.string() + ": the file cannot be opened for writing.");
   const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
-  const bool closed  = std::fclose(file) == 0;
+  const bool closed = std::fclose(file) == 0;
   std::error_code error;
   if (written && closed)
     std::filesystem::rename(temporary, path, error);

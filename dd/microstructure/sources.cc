@@ -51,9 +51,9 @@ void add_frank_read_source(Network &network, const Orientation &orientation, con
   const Vec3 e = source.burgers.normalized();
   if (std::abs(n.dot(e)) > 1e-9)
     throw std::invalid_argument("the Burgers vector of a Frank-Read source must lie in its glide plane");
-  const double angle     = source.character_angle * std::numbers::pi / 180;
-  const Vec3 t           = std::cos(angle) * e + std::sin(angle) * n.cross(e);
-  const unsigned pieces  = std::max(2U, static_cast<unsigned>(std::ceil(source.length / max_segment - 1e-9)));
+  const double angle = source.character_angle * std::numbers::pi / 180;
+  const Vec3 t = std::cos(angle) * e + std::sin(angle) * n.cross(e);
+  const unsigned pieces = std::max(2U, static_cast<unsigned>(std::ceil(source.length / max_segment - 1e-9)));
   const PlaneIndex plane = network.planes().find_or_insert(source.plane, n, source.centre);
   std::vector<Vec3> points;
   for (unsigned k = 0; k <= pieces; ++k)
@@ -68,14 +68,15 @@ void add_polygon_loop(Network &network, const Orientation &orientation, const Po
   require_positive(loop.burgers.norm(), "the Burgers vector of a loop");
   if (loop.corners < 3)
     throw std::invalid_argument("a loop needs at least three corners");
-  const Vec3 n      = orientation.unit_vector(loop.plane);
-  const Vec3 u      = n.unitOrthogonal(), v = n.cross(u);
-  const bool glide  = std::abs(n.dot(loop.burgers)) < 1e-9 * loop.burgers.norm();
-  const auto corner = [&](const unsigned k) -> Vec3 {
+  const Vec3 n = orientation.unit_vector(loop.plane);
+  const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
+  const bool glide = std::abs(n.dot(loop.burgers)) < 1e-9 * loop.burgers.norm();
+  const auto corner = [&](const unsigned k) -> Vec3
+  {
     const double angle = 2 * std::numbers::pi * (k % loop.corners) / loop.corners;
     return loop.centre + loop.radius * (std::cos(angle) * u + std::sin(angle) * v);
   };
-  const double side     = (corner(1) - corner(0)).norm();
+  const double side = (corner(1) - corner(0)).norm();
   const unsigned pieces = std::max(1U, static_cast<unsigned>(std::ceil(side / max_segment - 1e-9)));
   const PlaneIndex own_plane = glide ? network.planes().find_or_insert(loop.plane, n, loop.centre) : PlaneIndex{};
   std::vector<Vec3> points;
@@ -91,7 +92,7 @@ void add_polygon_loop(Network &network, const Orientation &orientation, const Po
   for (std::size_t k = 0; k < nodes.size(); ++k)
   {
     const SegmentIndex s = *network.find(nodes[k], nodes[(k + 1) % nodes.size()]);
-    Segment segment      = network.get(s);
+    Segment segment = network.get(s);
     segment.plane = prism_plane(network, orientation, network.direction(s), loop.burgers, network.position(nodes[k]));
     network.set(s, segment);
   }

@@ -14,8 +14,8 @@ struct FrankReadSource
 {
   Miller plane{};              ///< crystal frame
   Vec3 burgers = Vec3::Zero(); ///< nm
-  Vec3 centre  = Vec3::Zero();
-  double length          = 0.0;
+  Vec3 centre = Vec3::Zero();
+  double length = 0.0;
   double character_angle = 90.0; ///< between line and Burgers vector, degrees: 0 screw, 90 edge
 };
 
@@ -25,8 +25,8 @@ struct PolygonLoop
 {
   Miller plane{};
   Vec3 burgers = Vec3::Zero(); ///< nm
-  Vec3 centre  = Vec3::Zero();
-  double radius    = 0.0; ///< of the corners
+  Vec3 centre = Vec3::Zero();
+  double radius = 0.0; ///< of the corners
   unsigned corners = 24;
 };
 

@@ -59,7 +59,7 @@ double nodal_drag(const Network &network, const NodeIndex i, const LinearGlide &
   double drag = 0;
   for (const SegmentIndex s : network.connected_segments(i))
   {
-    const Vec3 t        = network.direction(s);
+    const Vec3 t = network.direction(s);
     const double length = t.norm();
     const double cosine = t.dot(network.burgers(s)) / (length * network.burgers(s).norm());
     drag += 0.5 * length * (law.drag_edge + (law.drag_screw - law.drag_edge) * cosine * cosine);
@@ -71,11 +71,13 @@ std::vector<Vec3> glide_velocities(const Network &network, const std::vector<Vec
                                    const GrainShape *shape)
 {
   std::vector<Vec3> velocity(network.node_capacity(), Vec3::Zero());
-  network.for_each_node([&](const NodeIndex i) {
-    const double drag = nodal_drag(network, i, law);
-    if (drag > 0)
-      velocity[i.value] = glide_projector(network, i, shape) * force[i.value] / drag;
-  });
+  network.for_each_node(
+      [&](const NodeIndex i)
+      {
+        const double drag = nodal_drag(network, i, law);
+        if (drag > 0)
+          velocity[i.value] = glide_projector(network, i, shape) * force[i.value] / drag;
+      });
   return velocity;
 }
 } // namespace ddfem

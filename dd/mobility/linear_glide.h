@@ -12,7 +12,7 @@ namespace ddfem
 /// B(theta) = B_screw cos^2 theta + B_edge sin^2 theta, theta the angle between line and Burgers vector.
 struct LinearGlide
 {
-  double drag_edge  = 0.0;
+  double drag_edge = 0.0;
   double drag_screw = 0.0;
 };
 

@@ -90,10 +90,10 @@ std::optional<GlidePlanes::FamilyMatch> GlidePlanes::find_family(const std::arra
       for (int j = -1; j <= 1; ++j)
         for (int k = -1; k <= 1; ++k)
         {
-          const Vec3 n     = sign * normal;
-          const auto found = family_by_key_.find({normal_kind, quantised(n[0], normal_tolerance) + i,
-                                                  quantised(n[1], normal_tolerance) + j,
-                                                  quantised(n[2], normal_tolerance) + k});
+          const Vec3 n = sign * normal;
+          const auto found =
+              family_by_key_.find({normal_kind, quantised(n[0], normal_tolerance) + i,
+                                   quantised(n[1], normal_tolerance) + j, quantised(n[2], normal_tolerance) + k});
           if (found != family_by_key_.end() && (families_[found->second].normal - n).norm() <= normal_tolerance)
             return FamilyMatch{found->second, sign < 0};
         }
@@ -113,8 +113,8 @@ GlidePlanes::FamilyMatch GlidePlanes::find_or_insert_family(const std::array<int
     return *found;
   }
   const bool reversed = leading_sign(miller) < 0;
-  const Vec3 unit     = (reversed ? Vec3(-normal) : normal).normalized();
-  const auto family   = static_cast<std::uint32_t>(families_.size());
+  const Vec3 unit = (reversed ? Vec3(-normal) : normal).normalized();
+  const auto family = static_cast<std::uint32_t>(families_.size());
   families_.push_back({indices, unit});
   if (is_crystallographic(indices))
     family_by_key_[{miller_kind, indices[0], indices[1], indices[2]}] = family;
@@ -137,7 +137,7 @@ std::optional<PlaneIndex> GlidePlanes::find_in_family(std::uint32_t family, doub
     const double distance = std::abs(planes_[found->second].offset - offset);
     if (distance <= nearest_distance)
     {
-      nearest          = PlaneIndex{found->second};
+      nearest = PlaneIndex{found->second};
       nearest_distance = distance;
     }
   }
@@ -213,7 +213,7 @@ Vec3 GlidePlanes::project_on_intersection(std::span<const PlaneIndex> planes, co
 {
   // Minimise |dx| subject to n_k . dx = -distance_k: dx = -N^+ d, with the pseudo-inverse from N^T N (3x3).
   Mat3 normal_matrix = Mat3::Zero();
-  Vec3 right_side    = Vec3::Zero();
+  Vec3 right_side = Vec3::Zero();
   PlaneIndex first;
   bool several = false;
   for (std::size_t k = 0; k < planes.size(); ++k)

@@ -17,7 +17,7 @@ namespace ddfem
 /// Index of a plane in GlidePlanes.
 struct PlaneIndex
 {
-  std::uint32_t value                    = invalid;
+  std::uint32_t value = invalid;
   static constexpr std::uint32_t invalid = 0xffffffffU;
   bool is_valid() const { return value != invalid; }
   auto operator<=>(const PlaneIndex &) const = default;
@@ -28,8 +28,8 @@ struct GlidePlane
 {
   /// Reduced, first non-zero index positive; 0 0 0 for a plane that is not crystallographic.
   std::array<int, 3> miller{};
-  Vec3 normal   = Vec3::Zero(); ///< unit, sample frame
-  double offset = 0.0;          ///< nm
+  Vec3 normal = Vec3::Zero(); ///< unit, sample frame
+  double offset = 0.0;        ///< nm
 };
 
 /// Registry of glide planes: a plane is stored once, however often and with whatever rounding it is asked for.
@@ -96,7 +96,7 @@ private:
   struct FamilyMatch
   {
     std::uint32_t family = 0;
-    bool reversed        = false;
+    bool reversed = false;
   };
 
   std::optional<FamilyMatch> find_family(const std::array<int, 3> &reduced, const Vec3 &normal) const;

@@ -14,8 +14,7 @@ namespace ddfem
 {
 /// Short list that keeps the order of insertion; up to four entries live in place, without an allocation. Nearly every
 /// node of a network has two arms, a junction node three or four.
-template <class Index>
-class ShortList
+template <class Index> class ShortList
 {
 public:
   std::span<const Index> view() const { return {on_heap() ? heap_.data() : inline_.data(), size_}; }
@@ -39,7 +38,7 @@ public:
   void remove(Index i)
   {
     const std::span<Index> list = view();
-    std::size_t kept            = 0;
+    std::size_t kept = 0;
     for (const Index j : list)
       if (j != i)
         list[kept++] = j;
@@ -60,28 +59,21 @@ private:
 
 /// Indices of the live objects in increasing order. Erasing is O(1): the list is compacted when it is next looked at,
 /// by whichever thread comes first.
-template <class Index>
-class LiveIndices
+template <class Index> class LiveIndices
 {
 public:
   LiveIndices() = default;
-  LiveIndices(const LiveIndices &other)
-    : list_(other.list_)
-    , stale_(other.stale_.load())
-  {}
-  LiveIndices(LiveIndices &&other) noexcept
-    : list_(std::move(other.list_))
-    , stale_(other.stale_.load())
-  {}
+  LiveIndices(const LiveIndices &other) : list_(other.list_), stale_(other.stale_.load()) {}
+  LiveIndices(LiveIndices &&other) noexcept : list_(std::move(other.list_)), stale_(other.stale_.load()) {}
   LiveIndices &operator=(const LiveIndices &other)
   {
-    list_  = other.list_;
+    list_ = other.list_;
     stale_ = other.stale_.load();
     return *this;
   }
   LiveIndices &operator=(LiveIndices &&other) noexcept
   {
-    list_  = std::move(other.list_);
+    list_ = std::move(other.list_);
     stale_ = other.stale_.load();
     return *this;
   }

@@ -34,7 +34,7 @@ inline std::uint64_t morton_index(std::uint64_t i, std::uint64_t j, std::uint64_
 inline std::uint64_t morton_index(const Vec3 &x, const Vec3 &origin, double width)
 {
   constexpr double cells = 1U << morton_bits;
-  std::uint64_t cell[3]  = {0, 0, 0};
+  std::uint64_t cell[3] = {0, 0, 0};
   for (int d = 0; d < 3; ++d)
     if (width > 0)
       cell[d] = static_cast<std::uint64_t>(std::clamp((x[d] - origin[d]) / width * cells, 0.0, cells - 1));

@@ -21,12 +21,9 @@ const char *name_of(NodeConstraint constraint)
 {
   switch (constraint)
   {
-    case NodeConstraint::free:
-      return "free";
-    case NodeConstraint::pinned:
-      return "pinned";
-    case NodeConstraint::surface:
-      return "surface";
+    case NodeConstraint::free: return "free";
+    case NodeConstraint::pinned: return "pinned";
+    case NodeConstraint::surface: return "surface";
   }
   return "unknown";
 }
@@ -164,7 +161,7 @@ void Network::set_next_ids(ObjectId node, ObjectId segment)
   if (node < next_node_id_ || segment < next_segment_id_)
     throw std::invalid_argument("Ids are never reused: the next ids must be at least " + std::to_string(next_node_id_) +
                                 " (node) and " + std::to_string(next_segment_id_) + " (segment).");
-  next_node_id_    = node;
+  next_node_id_ = node;
   next_segment_id_ = segment;
 }
 
@@ -193,7 +190,7 @@ Segment Network::at(SegmentIndex s) const
 void Network::set(NodeIndex i, const Node &node)
 {
   require(i);
-  position_[i.value]   = node.position;
+  position_[i.value] = node.position;
   constraint_[i.value] = node.constraint;
 }
 
@@ -205,7 +202,7 @@ void Network::set(SegmentIndex s, const Segment &segment)
   if (segment.plane.is_valid() && segment.plane.value >= planes_.size())
     throw std::invalid_argument("set() was given an unknown glide plane for " + describe(s) + ".");
   burgers_[s.value] = segment.burgers;
-  plane_[s.value]   = segment.plane;
+  plane_[s.value] = segment.plane;
 }
 
 bool Network::is_physical(NodeIndex i) const
@@ -225,7 +222,7 @@ void Network::set_period(const Vec3 &period)
 {
   if (!period.allFinite() || period.minCoeff() < 0)
     throw std::invalid_argument("The period of a network must be finite and not negative (zero: not periodic).");
-  period_      = period;
+  period_ = period;
   is_periodic_ = period.maxCoeff() > 0;
 }
 

@@ -21,19 +21,19 @@ namespace ddfem
 /// Index of a node. Between two calls of Network::clean() an index never changes its meaning.
 struct NodeIndex
 {
-  std::uint32_t value                                    = invalid;
-  static constexpr std::uint32_t invalid                 = 0xffffffffU;
+  std::uint32_t value = invalid;
+  static constexpr std::uint32_t invalid = 0xffffffffU;
   bool is_valid() const { return value != invalid; }
-  auto operator<=>(const NodeIndex &) const              = default;
+  auto operator<=>(const NodeIndex &) const = default;
 };
 
 /// Index of a segment; same guarantees as NodeIndex.
 struct SegmentIndex
 {
-  std::uint32_t value                                    = invalid;
-  static constexpr std::uint32_t invalid                 = 0xffffffffU;
+  std::uint32_t value = invalid;
+  static constexpr std::uint32_t invalid = 0xffffffffU;
   bool is_valid() const { return value != invalid; }
-  auto operator<=>(const SegmentIndex &) const           = default;
+  auto operator<=>(const SegmentIndex &) const = default;
 };
 
 /// What restrains a node besides its glide planes.
@@ -49,7 +49,7 @@ const char *name_of(NodeConstraint constraint);
 /// Value type of a node, as inserted and as returned by get().
 struct Node
 {
-  Vec3 position             = Vec3::Zero(); ///< nm, sample frame
+  Vec3 position = Vec3::Zero(); ///< nm, sample frame
   NodeConstraint constraint = NodeConstraint::free;
 };
 
@@ -230,16 +230,15 @@ private:
   std::unordered_map<ObjectId, SegmentIndex> segment_of_id_;
   LiveIndices<NodeIndex> live_nodes_;
   LiveIndices<SegmentIndex> live_segments_;
-  ObjectId next_node_id_    = 0;
+  ObjectId next_node_id_ = 0;
   ObjectId next_segment_id_ = 0;
 
   GlidePlanes planes_;
-  Vec3 period_      = Vec3::Zero();
+  Vec3 period_ = Vec3::Zero();
   bool is_periodic_ = false;
 };
 
-template <class Index, class F>
-void Network::parallel_for(std::span<const Index> range, F &&f)
+template <class Index, class F> void Network::parallel_for(std::span<const Index> range, F &&f)
 {
   std::exception_ptr error; // an exception must not leave the parallel region
 #pragma omp parallel for schedule(static)
@@ -259,20 +258,17 @@ void Network::parallel_for(std::span<const Index> range, F &&f)
     std::rethrow_exception(error);
 }
 
-template <class F>
-void Network::for_each_node(F &&f) const
+template <class F> void Network::for_each_node(F &&f) const
 {
   parallel_for(nodes(), std::forward<F>(f));
 }
 
-template <class F>
-void Network::for_each_segment(F &&f) const
+template <class F> void Network::for_each_segment(F &&f) const
 {
   parallel_for(segments(), [&](SegmentIndex s) { f(s, start(s), end(s)); });
 }
 
-template <class F>
-void Network::for_each_node_with_segments(F &&f) const
+template <class F> void Network::for_each_node_with_segments(F &&f) const
 {
   parallel_for(nodes(), [&](NodeIndex i) { f(i, connected_segments(i)); });
 }

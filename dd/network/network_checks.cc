@@ -88,7 +88,7 @@ void Network::check_node(NodeIndex i, double tolerance, std::vector<InvariantVio
 void Network::check_plane(SegmentIndex s, double tolerance, std::vector<InvariantViolation> &found) const
 {
   const auto report = [&](const std::string &what) { found.push_back({describe(s) + ": " + what}); };
-  const Vec3 n      = normal(s);
+  const Vec3 n = normal(s);
   if (!(std::abs(burgers(s).dot(n)) <= tolerance))
     report("its Burgers vector " + text_of(burgers(s)) + " leaves the glide plane by " + text_of(burgers(s).dot(n)) +
            ".");
@@ -96,7 +96,7 @@ void Network::check_plane(SegmentIndex s, double tolerance, std::vector<Invarian
     report("the line leaves the glide plane by " + text_of(direction(s).dot(n)) + " between its ends.");
   // Across the boundary of a periodic cell it is the image of the end that lies on the plane.
   const double at_start = planes_.distance(plane(s), position(start(s)));
-  const double at_end   = planes_.distance(plane(s), position(start(s)) + direction(s));
+  const double at_end = planes_.distance(plane(s), position(start(s)) + direction(s));
   if (!(std::abs(at_start) <= tolerance))
     report("its start is " + text_of(at_start) + " off the glide plane.");
   if (!(std::abs(at_end) <= tolerance))

@@ -11,12 +11,11 @@ namespace
 /// Smallest cube with the lower corner of the bounding box of the points.
 struct Cube
 {
-  Vec3 origin  = Vec3::Zero();
+  Vec3 origin = Vec3::Zero();
   double width = 0;
 };
 
-template <class Index, class Position>
-Cube bounding_cube(std::span<const Index> range, Position &&position)
+template <class Index, class Position> Cube bounding_cube(std::span<const Index> range, Position &&position)
 {
   if (range.empty())
     return {};
@@ -24,8 +23,8 @@ Cube bounding_cube(std::span<const Index> range, Position &&position)
   for (const Index i : range)
   {
     const Vec3 x = position(i);
-    lower        = lower.cwiseMin(x);
-    upper        = upper.cwiseMax(x);
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
   }
   return {lower, (upper - lower).maxCoeff()};
 }
@@ -33,8 +32,8 @@ Cube bounding_cube(std::span<const Index> range, Position &&position)
 struct SortKey
 {
   std::uint64_t morton = 0;
-  ObjectId id          = 0;
-  std::uint32_t old    = 0;
+  ObjectId id = 0;
+  std::uint32_t old = 0;
   bool operator<(const SortKey &other) const { return morton != other.morton ? morton < other.morton : id < other.id; }
 };
 
@@ -54,8 +53,7 @@ std::vector<std::uint32_t> morton_order(std::span<const Index> range, Position &
 }
 
 /// new[i] = old[order[i]]
-template <class T>
-void permute(std::vector<T> &values, const std::vector<std::uint32_t> &order)
+template <class T> void permute(std::vector<T> &values, const std::vector<std::uint32_t> &order)
 {
   std::vector<T> sorted;
   sorted.reserve(order.size());
@@ -64,8 +62,7 @@ void permute(std::vector<T> &values, const std::vector<std::uint32_t> &order)
   values = std::move(sorted);
 }
 
-template <class Index>
-std::vector<Index> inverse(const std::vector<std::uint32_t> &order, std::size_t old_size)
+template <class Index> std::vector<Index> inverse(const std::vector<std::uint32_t> &order, std::size_t old_size)
 {
   std::vector<Index> new_index(old_size);
   for (std::size_t i = 0; i < order.size(); ++i)
@@ -77,7 +74,7 @@ std::vector<Index> inverse(const std::vector<std::uint32_t> &order, std::size_t 
 void Network::clean_nodes()
 {
   const auto order = morton_order(
-    nodes(), [this](NodeIndex i) -> const Vec3 & { return position(i); }, [this](NodeIndex i) { return id(i); });
+      nodes(), [this](NodeIndex i) -> const Vec3 & { return position(i); }, [this](NodeIndex i) { return id(i); });
   const auto new_index = inverse<NodeIndex>(order, node_capacity());
   permute(position_, order);
   permute(constraint_, order);
@@ -90,15 +87,15 @@ void Network::clean_nodes()
   for (const SegmentIndex s : segments())
   {
     start_[s.value] = new_index[start(s).value];
-    end_[s.value]   = new_index[end(s).value];
+    end_[s.value] = new_index[end(s).value];
   }
 }
 
 void Network::clean_segments()
 {
   const auto order = morton_order(
-    segments(), [this](SegmentIndex s) { return Vec3(position(start(s)) + 0.5 * direction(s)); },
-    [this](SegmentIndex s) { return id(s); });
+      segments(), [this](SegmentIndex s) { return Vec3(position(start(s)) + 0.5 * direction(s)); },
+      [this](SegmentIndex s) { return id(s); });
   const auto new_index = inverse<SegmentIndex>(order, segment_capacity());
   permute(start_, order);
   permute(end_, order);

@@ -30,7 +30,7 @@ std::vector<NodeIndex> follow(const Network &network, const NodeIndex first)
 void require_simple_line(const Network &network, const NodeIndex i)
 {
   const std::size_t degree = network.degree(i);
-  const bool surface       = network.constraint(i) == NodeConstraint::surface;
+  const bool surface = network.constraint(i) == NodeConstraint::surface;
   if ((surface && degree == 1) || (!surface && degree == 2))
     return;
   std::ostringstream message;
@@ -46,10 +46,11 @@ SweptArea grown_area(const Network &network, const GrainShape *shape, const RayD
     require_simple_line(network, i);
   SweptArea area;
   std::vector<bool> done(network.node_capacity(), false);
-  const auto add_line_from = [&](const NodeIndex first) {
-    const auto chain   = follow(network, first);
-    const auto s       = network.connected_segments(first)[0];
-    const Vec3 b       = network.burgers_from(s, first);
+  const auto add_line_from = [&](const NodeIndex first)
+  {
+    const auto chain = follow(network, first);
+    const auto s = network.connected_segments(first)[0];
+    const Vec3 b = network.burgers_from(s, first);
     const PlaneIndex p = network.plane(s);
     for (const NodeIndex i : chain)
       done[i.value] = true;

@@ -16,14 +16,14 @@ std::vector<SegmentIndex> copy_of_arms(const Network &network, const NodeIndex i
 /// annihilate, others make a product line whose plane is looked up.
 void join(TopologyContext &context, const NodeIndex a, const NodeIndex c, const Vec3 &b, const PlaneIndex plane)
 {
-  Network &network    = context.network;
+  Network &network = context.network;
   const auto existing = network.find(a, c);
   if (!existing)
   {
     network.insert(Segment{a, c, b, plane});
     return;
   }
-  const Vec3 sum            = network.burgers_from(*existing, a) + b;
+  const Vec3 sum = network.burgers_from(*existing, a) + b;
   const PlaneIndex old_plane = network.plane(*existing);
   network.erase(*existing);
   if (sum.norm() < 1e-6 * b.norm())
@@ -35,7 +35,7 @@ void join(TopologyContext &context, const NodeIndex a, const NodeIndex c, const 
   if (!(plane == old_plane))
   {
     const Vec3 xi = network.minimum_image(network.position(c) - network.position(a)).normalized();
-    product       = context.product_plane(network, xi, sum, network.position(a));
+    product = context.product_plane(network, xi, sum, network.position(a));
   }
   network.insert(Segment{a, c, sum, product});
 }
@@ -54,7 +54,7 @@ bool is_discretisation_node(const Network &network, const NodeIndex i)
 
 NodeIndex split_segment(TopologyContext &context, const SegmentIndex s, const Vec3 &x, const Vec3 &displacement)
 {
-  Network &network  = context.network;
+  Network &network = context.network;
   const Segment old = network.get(s);
   const NodeIndex m = context.insert_node(Node{x, NodeConstraint::free}, displacement);
   network.erase(s);
@@ -66,7 +66,7 @@ NodeIndex split_segment(TopologyContext &context, const SegmentIndex s, const Ve
 void move_node(TopologyContext &context, const NodeIndex i, const Vec3 &x)
 {
   Network &network = context.network;
-  const Vec3 old   = network.position(i);
+  const Vec3 old = network.position(i);
   if (old == x)
     return;
   PlaneIndex plane;
@@ -74,8 +74,8 @@ void move_node(TopologyContext &context, const NodeIndex i, const Vec3 &x)
   {
     // The line from the other end q: q -> old becomes q -> x.
     const NodeIndex q = network.other_end(s, i);
-    const Vec3 xq     = old + network.minimum_image(network.position(q) - old);
-    plane             = network.plane(s);
+    const Vec3 xq = old + network.minimum_image(network.position(q) - old);
+    plane = network.plane(s);
     context.swept.add_triangle(xq, x, old, -network.burgers_from(s, i), plane);
   }
   if (network.constraint(i) == NodeConstraint::surface && context.shape)
@@ -90,9 +90,9 @@ void merge_nodes(TopologyContext &context, const NodeIndex kept, const NodeIndex
   Network &network = context.network;
   for (const SegmentIndex s : copy_of_arms(network, gone))
   {
-    const Vec3 b           = network.burgers_from(s, gone);
+    const Vec3 b = network.burgers_from(s, gone);
     const PlaneIndex plane = network.plane(s);
-    const NodeIndex other  = network.other_end(s, gone);
+    const NodeIndex other = network.other_end(s, gone);
     network.erase(s);
     if (other != kept) // a segment between the two has shrunk to nothing
       join(context, kept, other, b, plane);
@@ -106,7 +106,7 @@ void merge_nodes(TopologyContext &context, const NodeIndex kept, const NodeIndex
 NodeIndex detach_arms(TopologyContext &context, const NodeIndex i, std::span<const SegmentIndex> arms,
                       const NodeConstraint constraint)
 {
-  Network &network  = context.network;
+  Network &network = context.network;
   const NodeIndex n = context.insert_node(Node{network.position(i), constraint}, context.remaining[i.value]);
   for (const SegmentIndex s : std::vector<SegmentIndex>(arms.begin(), arms.end()))
   {
@@ -120,15 +120,15 @@ NodeIndex detach_arms(TopologyContext &context, const NodeIndex i, std::span<con
 
 void remove_node(TopologyContext &context, const NodeIndex i)
 {
-  Network &network       = context.network;
-  const auto arms        = copy_of_arms(network, i);
-  const NodeIndex a      = network.other_end(arms[0], i);
-  const NodeIndex c      = network.other_end(arms[1], i);
-  const Vec3 b           = network.burgers_from(arms[0], a); // line sense a -> i -> c
+  Network &network = context.network;
+  const auto arms = copy_of_arms(network, i);
+  const NodeIndex a = network.other_end(arms[0], i);
+  const NodeIndex c = network.other_end(arms[1], i);
+  const Vec3 b = network.burgers_from(arms[0], a); // line sense a -> i -> c
   const PlaneIndex plane = network.plane(arms[0]);
-  const Vec3 x           = network.position(i);
-  const Vec3 xa          = x + network.minimum_image(network.position(a) - x);
-  const Vec3 xc          = x + network.minimum_image(network.position(c) - x);
+  const Vec3 x = network.position(i);
+  const Vec3 xa = x + network.minimum_image(network.position(a) - x);
+  const Vec3 xc = x + network.minimum_image(network.position(c) - x);
   context.swept.add_triangle(xa, xc, x, b, plane);
   network.erase(arms[0]);
   network.erase(arms[1]);

@@ -116,9 +116,9 @@ void move_nodes(TopologyContext &context, const double fraction)
 
 void leave_through_surface(TopologyContext &context, const SegmentIndex s)
 {
-  Network &network        = context.network;
+  Network &network = context.network;
   const GrainShape &shape = *context.shape;
-  const Segment old       = network.get(s);
+  const Segment old = network.get(s);
   const Vec3 p = network.position(old.start), q = network.position(old.end), normal = network.normal(s);
   // The curve in which plane and surface intersect, by repeated halving.
   std::vector<Vec3> path{p, q};
@@ -136,8 +136,7 @@ void leave_through_surface(TopologyContext &context, const SegmentIndex s)
     context.swept.add_triangle(p, path[k], path[k + 1], old.burgers, old.plane);
   const auto direction = [&](const Vec3 &x) { return ray_direction(shape, context.ray_direction, x); };
   for (std::size_t k = 0; k + 1 < path.size(); ++k)
-    context.swept.add_opening(path[k], direction(path[k]), path[k + 1], direction(path[k + 1]), old.burgers,
-                              old.plane);
+    context.swept.add_opening(path[k], direction(path[k]), path[k + 1], direction(path[k + 1]), old.burgers, old.plane);
   network.erase(s);
   erase_if_orphan(network, old.start);
   erase_if_orphan(network, old.end);
@@ -145,8 +144,8 @@ void leave_through_surface(TopologyContext &context, const SegmentIndex s)
 
 void remove_surface_segments(TopologyContext &context)
 {
-  Network &network              = context.network;
-  constexpr double flatness     = 0.1;
+  Network &network = context.network;
+  constexpr double flatness = 0.1;
   const std::vector<SegmentIndex> segments(network.segments().begin(), network.segments().end());
   for (const SegmentIndex s : segments)
   {

@@ -17,12 +17,12 @@ namespace
 struct Part
 {
   std::vector<SegmentIndex> arms;
-  Vec3 force      = Vec3::Zero(); ///< MPa nm^2
-  Vec3 burgers    = Vec3::Zero(); ///< sum of the arms' Burgers vectors, leaving the node
-  double drag     = 0;            ///< MPa ns nm
-  Mat3 projector  = Mat3::Identity();
-  double shortest = 0; ///< shortest arm, nm
-  Vec3 arm_sum    = Vec3::Zero(); ///< sum of the arms' unit vectors
+  Vec3 force = Vec3::Zero();   ///< MPa nm^2
+  Vec3 burgers = Vec3::Zero(); ///< sum of the arms' Burgers vectors, leaving the node
+  double drag = 0;             ///< MPa ns nm
+  Mat3 projector = Mat3::Identity();
+  double shortest = 0;         ///< shortest arm, nm
+  Vec3 arm_sum = Vec3::Zero(); ///< sum of the arms' unit vectors
 
   Vec3 velocity(const Vec3 &extra_force) const { return projector * (force + extra_force) / drag; }
 };
@@ -57,14 +57,14 @@ Part make_part(const Network &n, const NodeIndex i, std::vector<SegmentIndex> ar
     const SegmentForces &f = forces.segment_ends[s.value];
     part.force += n.start(s) == i ? f.start : f.end;
     part.burgers += n.burgers_from(s, i);
-    const Vec3 t        = n.direction(s);
+    const Vec3 t = n.direction(s);
     const double length = t.norm(), cosine = t.dot(n.burgers(s)) / (length * n.burgers(s).norm());
     part.drag += 0.5 * length * (law.drag_edge + (law.drag_screw - law.drag_edge) * cosine * cosine);
     part.shortest = std::min(part.shortest, length);
     part.arm_sum += (n.start(s) == i ? 1.0 : -1.0) / length * t;
   }
   part.projector = common_directions(n, arms);
-  part.arms      = std::move(arms);
+  part.arms = std::move(arms);
   return part;
 }
 
@@ -114,10 +114,10 @@ std::optional<Split> evaluate(const SplittingModel &model, Part first, Part seco
 std::optional<Split> best_split(const Network &n, const NodeIndex i, const SplittingModel &model,
                                 const NodalForces &forces, const double separation)
 {
-  const auto arms       = n.connected_segments(i);
-  const std::size_t m   = arms.size();
-  const Part whole      = make_part(n, i, {arms.begin(), arms.end()}, forces, model.mobility);
-  const bool planar     = is_planar(n, i);
+  const auto arms = n.connected_segments(i);
+  const std::size_t m = arms.size();
+  const Part whole = make_part(n, i, {arms.begin(), arms.end()}, forces, model.mobility);
+  const bool planar = is_planar(n, i);
   const double at_least = 1.001 * whole.force.dot(whole.velocity(Vec3::Zero()));
   std::optional<Split> best;
   // Every partition once: the first arm always belongs to the first part.
@@ -143,10 +143,10 @@ bool is_inside(const TopologyContext &c, const Vec3 &x)
 
 void perform(TopologyContext &c, const NodeIndex i, const Split &split, const double separation)
 {
-  Network &n        = c.network;
-  const Vec3 b      = split.first.burgers;
+  Network &n = c.network;
+  const Vec3 b = split.first.burgers;
   const double half = 0.5 * std::min({separation, split.first.shortest, split.second.shortest});
-  const Vec3 first  = n.position(i) + half * (split.first.projector * split.direction);
+  const Vec3 first = n.position(i) + half * (split.first.projector * split.direction);
   const Vec3 second = n.position(i) - half * (split.second.projector * split.direction);
   if (!is_inside(c, first) || !is_inside(c, second) || (first - second).norm() < 0.1 * half)
     return;

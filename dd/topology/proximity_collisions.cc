@@ -34,7 +34,7 @@ std::optional<Contact> find_near(const TopologyContext &c, const SegmentIndex s1
   const Vec3 middle2 = middle1 + n.minimum_image(n.position(n.start(s2)) + 0.5 * t2 - middle1);
   if ((middle2 - middle1).norm() > 0.5 * (t1.norm() + t2.norm()) + r)
     return std::nullopt;
-  const Vec3 a2       = middle2 - 0.5 * t2;
+  const Vec3 a2 = middle2 - 0.5 * t2;
   const PairDistance d = distance_segment_segment(a1, a1 + t1, a2, a2 + t2);
   if (d.squared > r * r)
     return std::nullopt;
@@ -46,13 +46,13 @@ std::optional<Contact> find_near_hinge(const TopologyContext &c, const SegmentIn
                                        const NodeIndex o, const double r)
 {
   const Network &n = c.network;
-  const Vec3 t1    = (n.start(s1) == o ? 1.0 : -1.0) * n.direction(s1);
-  const Vec3 t2    = (n.start(s2) == o ? 1.0 : -1.0) * n.direction(s2);
+  const Vec3 t1 = (n.start(s1) == o ? 1.0 : -1.0) * n.direction(s1);
+  const Vec3 t2 = (n.start(s2) == o ? 1.0 : -1.0) * n.direction(s2);
   if (t1.dot(t2) <= 0)
     return std::nullopt;
   const bool first_is_shorter = t1.norm() <= t2.norm();
   const Vec3 &shorter = first_is_shorter ? t1 : t2, &longer = first_is_shorter ? t2 : t1;
-  const double u        = std::clamp(shorter.dot(longer) / longer.squaredNorm(), 0.0, 1.0);
+  const double u = std::clamp(shorter.dot(longer) / longer.squaredNorm(), 0.0, 1.0);
   const Vec3 separation = u * longer - shorter; // from the end of the shorter arm to the longer
   if (separation.norm() > r)
     return std::nullopt;
@@ -107,7 +107,7 @@ std::optional<Vec3> meeting_point(const TopologyContext &c, const NodeIndex i, c
     for (const SegmentIndex s : n.connected_segments(node))
     {
       normals.row(row) = n.normal(s).transpose();
-      offsets[row]     = n.normal(s).dot(position - x);
+      offsets[row] = n.normal(s).dot(position - x);
       ++row;
     }
   const Vec3 dx = normals.completeOrthogonalDecomposition().solve(offsets);
@@ -120,7 +120,7 @@ std::optional<Vec3> meeting_point(const TopologyContext &c, const NodeIndex i, c
 /// Node at parameter @p u of segment @p s: one of its ends if that is within the collision radius, else a new one.
 NodeIndex node_at(TopologyContext &c, const SegmentIndex s, const double u)
 {
-  Network &n          = c.network;
+  Network &n = c.network;
   const double length = n.length(s), r = c.settings.collision_radius;
   if (u * length <= r && u <= 0.5)
     return n.start(s);
@@ -138,7 +138,7 @@ int firmness(const Network &n, const NodeIndex i)
 /// Whether the two lines have been merged: it may be that no point can take both.
 bool merge_at_contact(TopologyContext &c, const SegmentIndex s1, const SegmentIndex s2, const Contact &contact)
 {
-  Network &n  = c.network;
+  Network &n = c.network;
   NodeIndex i = node_at(c, s1, contact.s);
   NodeIndex j = node_at(c, s2, contact.t);
   if (i == j)
@@ -146,8 +146,7 @@ bool merge_at_contact(TopologyContext &c, const SegmentIndex s1, const SegmentIn
   if (firmness(n, j) > firmness(n, i))
     std::swap(i, j);
   const bool both_held = firmness(n, i) > 0 && firmness(n, j) > 0;
-  const bool both_on_surface =
-    n.constraint(i) == NodeConstraint::surface && n.constraint(j) == NodeConstraint::surface;
+  const bool both_on_surface = n.constraint(i) == NodeConstraint::surface && n.constraint(j) == NodeConstraint::surface;
   // A line that comes near the end of another at the surface reaches the surface by itself; two pinned nodes stay apart.
   if ((both_held && !both_on_surface) || (firmness(n, i) == 1 && firmness(n, j) == 0))
     return false;

@@ -14,11 +14,11 @@ bool should_coarsen(const Network &network, const NodeIndex i, const TopologySet
 {
   if (!is_discretisation_node(network, i))
     return false;
-  const auto arms   = network.connected_segments(i);
+  const auto arms = network.connected_segments(i);
   const NodeIndex a = network.other_end(arms[0], i), c = network.other_end(arms[1], i);
-  const Vec3 &x     = network.position(i);
-  const Vec3 to_a   = network.minimum_image(network.position(a) - x);
-  const Vec3 to_c   = network.minimum_image(network.position(c) - x);
+  const Vec3 &x = network.position(i);
+  const Vec3 to_a = network.minimum_image(network.position(a) - x);
+  const Vec3 to_c = network.minimum_image(network.position(c) - x);
   if ((to_c - to_a).norm() > settings.max_segment)
     return false;
   const bool short_arm = std::min(to_a.norm(), to_c.norm()) < settings.min_segment;

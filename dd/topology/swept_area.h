@@ -14,9 +14,9 @@ namespace ddfem
 struct SweptTriangle
 {
   std::array<LoopVertex, 3> vertices;
-  Vec3 burgers;      ///< nm
-  PlaneIndex plane;  ///< glide plane of the line that moved
-  bool inside;       ///< swept by the real line inside the grain; otherwise by virtual rays
+  Vec3 burgers;     ///< nm
+  PlaneIndex plane; ///< glide plane of the line that moved
+  bool inside;      ///< swept by the real line inside the grain; otherwise by virtual rays
 };
 
 /// The triangles swept since the last clear(), in the order of the events.

@@ -14,10 +14,10 @@ namespace ddfem
 /// Lengths that control topology, nm.
 struct TopologySettings
 {
-  double min_segment      = 10.0; ///< L_min
-  double max_segment      = 30.0; ///< L_max
-  double min_area         = 0.0;  ///< triangle at a node below which the node is removed, nm^2
-  double collision_radius = 2.0;  ///< capture distance
+  double min_segment = 10.0;     ///< L_min
+  double max_segment = 30.0;     ///< L_max
+  double min_area = 0.0;         ///< triangle at a node below which the node is removed, nm^2
+  double collision_radius = 2.0; ///< capture distance
 };
 
 /// Number of topological events since the start of the run.

@@ -17,7 +17,7 @@ const Vec3 box_size(150, 120, 300);
 SweptArea loop_that_has_left(const GrainShape &shape, const Vec3 &n, const Vec3 &b)
 {
   Network network;
-  const Vec3 centre      = 0.5 * box_size;
+  const Vec3 centre = 0.5 * box_size;
   const PlaneIndex plane = network.planes().find_or_insert({0, 0, 0}, n, centre);
   const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
   std::vector<Vec3> points;
@@ -49,10 +49,10 @@ SweptArea loop_that_has_left(const GrainShape &shape, const Vec3 &n, const Vec3 
 TEST(FullSlip, LoopThatHasLeftUnloadsTheBarByOneBurgersVectorAndLeavesNoStress)
 {
   GrainParameters p;
-  p.mesh.size         = {box_size[0], box_size[1], box_size[2]};
+  p.mesh.size = {box_size[0], box_size[1], box_size[2]};
   p.mesh.subdivisions = {3, 3, 6};
-  p.clamped           = false;
-  p.reference         = ReferenceState::perfect_crystal;
+  p.clamped = false;
+  p.reference = ReferenceState::perfect_crystal;
   FiniteGrain grain(p, medium, MPI_COMM_WORLD);
   const Vec3 n = Vec3(0.4, 0.2, 1).normalized(), b = 0.286 * Vec3(1, 0, -0.4).normalized();
   const Network nothing;
@@ -69,7 +69,7 @@ TEST(FullSlip, LoopThatHasLeftUnloadsTheBarByOneBurgersVectorAndLeavesNoStress)
   for (const SymTensor &s : grain.correction_stress({Vec3(30, 40, 150), Vec3(75, 60, 160), Vec3(120, 20, 260)}))
   {
     SymTensor uniform = SymTensor::Zero();
-    uniform[2]        = solution.platen_reaction / grain.section();
+    uniform[2] = solution.platen_reaction / grain.section();
     EXPECT_NEAR((s - uniform).norm() / std::abs(uniform[2]), 0, 2e-3);
   }
 }

@@ -1,7 +1,6 @@
 #include "coupling/simulation.h"
 
 #include <gtest/gtest.h>
-
 #include <omp.h>
 
 namespace ddfem::coupling
@@ -46,12 +45,13 @@ Outcome run(const InputDeck &deck, MPI_Comm communicator, const int threads)
 }
 
 class SameTrajectory : public testing::TestWithParam<std::string>
-{};
+{
+};
 
 TEST_P(SameTrajectory, BitByBitOnAnyNumberOfRanksAndThreads)
 {
   const InputDeck deck = deck_of(GetParam(), high_stress);
-  const Outcome one    = run(deck, MPI_COMM_SELF, 1);
+  const Outcome one = run(deck, MPI_COMM_SELF, 1);
   EXPECT_GT(one.plastic_strain.norm(), 1e-7); // something has happened
   for (const auto &[communicator, threads] : {std::pair(MPI_COMM_SELF, 2), {MPI_COMM_WORLD, 1}, {MPI_COMM_WORLD, 2}})
   {
@@ -66,24 +66,27 @@ INSTANTIATE_TEST_SUITE_P(Modes, SameTrajectory, testing::Values("infinite", "per
 
 TEST(FiniteTrajectory, AgreesOnAnyNumberOfRanksToTheSolverTolerance)
 {
-  const InputDeck deck = deck_of("finite", {"Loading/Strain rate=-2e6", "Boundary conditions/Platen contact=frictionless",
-                                            "Domain/Subdivisions=3 3 4", "Domain/Elastic tolerance=1e-10"});
-  const Outcome one    = run(deck, MPI_COMM_SELF, 1);
-  const Outcome other  = run(deck, MPI_COMM_WORLD, 2);
+  const InputDeck deck =
+      deck_of("finite", {"Loading/Strain rate=-2e6", "Boundary conditions/Platen contact=frictionless",
+                         "Domain/Subdivisions=3 3 4", "Domain/Elastic tolerance=1e-10"});
+  const Outcome one = run(deck, MPI_COMM_SELF, 1);
+  const Outcome other = run(deck, MPI_COMM_WORLD, 2);
   EXPECT_GT(one.plastic_strain.norm(), 1e-8);
   EXPECT_NEAR((one.plastic_strain - other.plastic_strain).norm(), 0, 1e-6 * one.plastic_strain.norm());
 }
 
 TEST(PeriodicLoading, ConstantStrainRateStressIsTheElasticPartOfTheStrain)
 {
-  const InputDeck deck = deck_of("periodic", {"Loading/Type=strain rate", "Loading/Strain rate=1e7", "Loading/Axis=0 0 1"});
+  const InputDeck deck =
+      deck_of("periodic", {"Loading/Type=strain rate", "Loading/Strain rate=1e7", "Loading/Axis=0 0 1"});
   Simulation simulation(interpret(deck), MPI_COMM_SELF);
   RunOutput silent("", false);
   simulation.run(silent);
   const double modulus = interpret(deck).medium.youngs_modulus();
-  const double strain  = simulation.nominal_strain();
+  const double strain = simulation.nominal_strain();
   EXPECT_GT(strain, 1e-5);
-  EXPECT_NEAR(simulation.applied_stress()[2], modulus * (strain - simulation.plastic_strain()[2]), 1e-9 * modulus * strain);
+  EXPECT_NEAR(simulation.applied_stress()[2], modulus * (strain - simulation.plastic_strain()[2]),
+              1e-9 * modulus * strain);
   EXPECT_NEAR(simulation.applied_stress().norm(), std::abs(simulation.applied_stress()[2]), 1e-12 * modulus * strain);
 }
 

@@ -1,6 +1,5 @@
 // main() of the tests that run under MPI: every rank runs every test; a failure on one rank is a failure of mpirun.
 #include <deal.II/base/mpi.h>
-
 #include <gtest/gtest.h>
 #include <omp.h>
 

@@ -1,13 +1,12 @@
 // Screw dislocation on the axis of a free rod of radius R: at mid-length the correction is the Eshelby twist
 // sigma_theta_z = - mu b r / (pi R^2) (Eshelby, J. Appl. Phys. 24 (1953) 176).
-#include "support.h"
-
 #include "coupling/convert.h"
 #include "coupling/dislocation_tractions.h"
 #include "dd/forces/line_system.h"
 #include "dd/geometry/grain_shape.h"
 #include "fem/elastic_problem.h"
 #include "fem/mesh.h"
+#include "support.h"
 
 using namespace ddfem;
 using namespace ddfem::validation;
@@ -19,9 +18,9 @@ double largest_error(const unsigned across, const double aspect)
 {
   const double radius = 100, height = aspect * radius, b = 0.25;
   fem::MeshParameters m;
-  m.shape        = fem::MeshParameters::Shape::cylinder;
-  m.radius       = radius;
-  m.height       = height;
+  m.shape = fem::MeshParameters::Shape::cylinder;
+  m.radius = radius;
+  m.height = height;
   m.subdivisions = {across, across, static_cast<unsigned>(across * aspect / 4)};
   const auto mesh = fem::make_mesh(MPI_COMM_WORLD, m);
   fem::ElasticProblem problem(*mesh, {}, {medium().mu, medium().nu}, {});
@@ -42,7 +41,7 @@ double largest_error(const unsigned across, const double aspect)
       points.push_back({radii.back() * std::cos(angles.back()), radii.back() * std::sin(angles.back()), height / 2});
     }
   const auto stress = problem.stress_at(points);
-  double worst      = 0;
+  double worst = 0;
   for (std::size_t k = 0; k < points.size(); ++k)
   {
     const double c = std::cos(angles[k]), s = std::sin(angles[k]);
@@ -55,7 +54,9 @@ double largest_error(const unsigned across, const double aspect)
 
 int main(int argc, char **argv)
 {
-  return run(argc, argv, [](Report &report) {
-    report.below("free rod of length 6 R, 6 elements across: error of the Eshelby twist", largest_error(6, 6), 0.02);
-  });
+  return run(argc, argv,
+             [](Report &report) {
+               report.below("free rod of length 6 R, 6 elements across: error of the Eshelby twist",
+                            largest_error(6, 6), 0.02);
+             });
 }

@@ -6,11 +6,11 @@
 #include "dd/network/network.h"
 
 #include <deal.II/base/mpi.h>
+#include <omp.h>
 
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <omp.h>
 #include <string>
 
 namespace ddfem::validation
@@ -81,7 +81,7 @@ inline void add_half_loop(Network &network, const Vec3 &centre, const Vec3 &n, c
     points.push_back(centre + radius * (std::cos(angle) * u - std::sin(angle) * outward));
   }
   points.front() = centre + radius * u; // exactly on the surface
-  points.back()  = centre - radius * u;
+  points.back() = centre - radius * u;
   add_line(network, points, b, {}, false, NodeConstraint::surface);
 }
 

@@ -15,7 +15,7 @@ using namespace ddfem;
 IsotropicAverage average_of_tensor(const Material &m)
 {
   const SingleCrystalStiffness &c = m.stiffness;
-  const double c66                = m.lattice == Lattice::hcp ? (c.c11 - c.c12) / 2 : c.c44;
+  const double c66 = m.lattice == Lattice::hcp ? (c.c11 - c.c12) / 2 : c.c44;
   const std::array<std::array<double, 6>, 6> voigt = {{{c.c11, c.c12, c.c13, 0, 0, 0},
                                                        {c.c12, c.c11, c.c13, 0, 0, 0},
                                                        {c.c13, c.c13, c.c33, 0, 0, 0},
@@ -50,8 +50,8 @@ TEST(Material, IsotropicConstantsAreWithinMeasurementScatterOfOtherCompilations)
   // mu (GPa) and nu from Voigt averages of the older measurements compiled by Hirth & Lothe (1982) for the cubic
   // metals; polycrystalline zirconium from the CRC Handbook / Samsonov.
   const std::map<std::string, std::pair<double, double>> published = {
-    {"aluminium", {26.5, 0.347}}, {"copper", {54.6, 0.324}},    {"nickel", {94.7, 0.276}},
-    {"iron", {86.0, 0.291}},      {"tungsten", {160.0, 0.278}}, {"zirconium", {36.0, 0.33}}};
+      {"aluminium", {26.5, 0.347}}, {"copper", {54.6, 0.324}},    {"nickel", {94.7, 0.276}},
+      {"iron", {86.0, 0.291}},      {"tungsten", {160.0, 0.278}}, {"zirconium", {36.0, 0.33}}};
   for (const Material &m : known_materials())
   {
     const auto &[mu, nu] = published.at(m.name);
@@ -73,18 +73,18 @@ TEST(Material, BurgersVectorIsTheShortestLatticeTranslation)
 
 TEST(Material, DensityFollowsFromLatticeParameterAndAtomicMass)
 {
-  const std::map<std::string, double> atomic_mass = {{"aluminium", 26.982}, {"copper", 63.546},    {"nickel", 58.693},
-                                                     {"iron", 55.845},      {"tungsten", 183.84},
-                                                     {"zirconium", 91.224}};
+  const std::map<std::string, double> atomic_mass = {{"aluminium", 26.982}, {"copper", 63.546},
+                                                     {"nickel", 58.693},    {"iron", 55.845},
+                                                     {"tungsten", 183.84},  {"zirconium", 91.224}};
   constexpr double dalton = 1.66053907e-27; // kg
   for (const Material &m : known_materials())
   {
-    const double a       = m.lattice_parameter * 1e-9;
-    const double cell    = m.lattice == Lattice::hcp ? std::sqrt(3.0) / 2 * *m.c_over_a * a * a * a : a * a * a;
+    const double a = m.lattice_parameter * 1e-9;
+    const double cell = m.lattice == Lattice::hcp ? std::sqrt(3.0) / 2 * *m.c_over_a * a * a * a : a * a * a;
     const double n_atoms = m.lattice == Lattice::fcc ? 4 : 2;
     EXPECT_NEAR(m.mass_density_kg_per_m3, n_atoms * atomic_mass.at(m.name) * dalton / cell,
                 0.01 * m.mass_density_kg_per_m3)
-      << m.name;
+        << m.name;
   }
 }
 

@@ -15,8 +15,7 @@ void expect_proper_rotation(const Orientation &orientation)
   EXPECT_NEAR(r.determinant(), 1, 1e-15);
 }
 
-template <class F>
-std::string message_of(F &&f)
+template <class F> std::string message_of(F &&f)
 {
   try
   {
@@ -99,11 +98,17 @@ TEST(Orientation, ImpossibleAxesAreExplained)
   const auto oblique = [] { Orientation::from_axes(SampleAxis::x, {1, 0, 0}, SampleAxis::z, {1, 0, 1}); };
   EXPECT_EQ(message_of(oblique), "The crystal directions [100] and [101] of two sample axes enclose 45.000000 degrees; "
                                  "they must be orthogonal.");
-  EXPECT_NE(message_of([] { Orientation::from_axes(SampleAxis::x, {0, 0, 0}, SampleAxis::z, {1, 0, 1}); })
-              .find("[000]"),
+  EXPECT_NE(message_of(
+                [] {
+                  Orientation::from_axes(SampleAxis::x, {0, 0, 0}, SampleAxis::z, {1, 0, 1});
+                })
+                .find("[000]"),
             std::string::npos);
-  EXPECT_NE(message_of([] { Orientation::from_axes(SampleAxis::x, {1, 0, 0}, SampleAxis::x, {0, 0, 1}); })
-              .find("same sample axis"),
+  EXPECT_NE(message_of(
+                [] {
+                  Orientation::from_axes(SampleAxis::x, {1, 0, 0}, SampleAxis::x, {0, 0, 1});
+                })
+                .find("same sample axis"),
             std::string::npos);
   EXPECT_NE(message_of([] { Orientation::from_loading_axis({0, 0, 0}); }).find("[000]"), std::string::npos);
   EXPECT_THROW(Orientation::from_rotation(-Mat3::Identity()), std::invalid_argument);

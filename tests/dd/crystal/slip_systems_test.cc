@@ -36,7 +36,7 @@ std::size_t n_equally_loaded(const SlipSystems &systems, const Vec3 &axis)
 {
   const double largest = systems.largest_schmid_factor(axis);
   return static_cast<std::size_t>(std::ranges::count_if(
-    systems, [&](const SlipSystem &s) { return std::abs(std::abs(s.schmid_factor(axis)) - largest) < 1e-12; }));
+      systems, [&](const SlipSystem &s) { return std::abs(std::abs(s.schmid_factor(axis)) - largest) < 1e-12; }));
 }
 
 TEST(SlipSystems, FccHasTwelveDistinctSystemsWithBurgersVectorsInTheirPlanes)
@@ -122,7 +122,7 @@ TEST(SlipSystems, ResolvedShearStressOfUniaxialTensionIsSchmidFactorTimesStress)
 {
   const SlipSystems systems(Lattice::fcc, a0, Orientation::from_loading_axis({1, 2, 3}));
   SymTensor tension = SymTensor::Zero();
-  tension[2]        = 50;
+  tension[2] = 50;
   SymTensor pressure = SymTensor::Zero();
   pressure.head<3>().setConstant(-7);
   for (const SlipSystem &s : systems)
@@ -141,7 +141,7 @@ TEST(SlipSystems, SystemIsFoundFromBurgersVectorAndPlaneInEitherSense)
     const Miller plane = systems[s].plane_miller;
     for (const int sign : {1, -1})
     {
-      const Vec3 b       = sign * systems[s].burgers;
+      const Vec3 b = sign * systems[s].burgers;
       const auto by_name = systems.find(b, Miller{2 * plane[0], 2 * plane[1], 2 * plane[2]});
       const auto by_unit = systems.find(b, Vec3(-systems[s].normal));
       ASSERT_TRUE(by_name && by_unit);

@@ -19,7 +19,7 @@ std::vector<PolyhedronShape::Facet> unit_cube_facets()
       for (const auto &[u, v] : {std::pair(0.0, 0.0), {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
       {
         Vec3 x;
-        x[c]           = side;
+        x[c] = side;
         x[(c + 1) % 3] = u;
         x[(c + 2) % 3] = v;
         f.vertices.push_back(x);

@@ -1,5 +1,4 @@
 #include "dd/integrators/stabilised_runge_kutta.h"
-
 #include "dd/microstructure/sources.h"
 
 #include <gtest/gtest.h>
@@ -91,7 +90,7 @@ TEST(StabilisedRungeKutta, StepsFarBeyondTheEulerLimitStayStable)
 
 TEST(StabilisedRungeKutta, NetworkIsLeftInPlaceAndLimitsAreRespected)
 {
-  Network n                 = bowed_line();
+  Network n = bowed_line();
   const std::uint64_t before = n.checksum();
   StabilisedRungeKutta method({0.01, 0.5, 1e9, 10.0, 50});
   const IntegratorStep step = method.advance(n, string_velocity, stiffness(), 1e9);
@@ -107,7 +106,8 @@ TEST(StabilisedRungeKutta, NonFiniteVelocityNamesTheNode)
 {
   Network n = bowed_line();
   StabilisedRungeKutta method({0.01, 0.5, 1e9, 1.0, 50});
-  const auto velocity = [](const Network &net) {
+  const auto velocity = [](const Network &net)
+  {
     std::vector<Vec3> v(net.node_capacity(), Vec3::Zero());
     v[3][0] = std::numeric_limits<double>::quiet_NaN();
     return v;
@@ -125,7 +125,7 @@ TEST(StabilisedRungeKutta, NonFiniteVelocityNamesTheNode)
 
 TEST(StabilisedRungeKutta, StiffnessBoundIsTheLargestEigenvalueOfAUniformChain)
 {
-  const Network n   = bowed_line();
+  const Network n = bowed_line();
   const double drag = 1.0, h = n.length(n.segments()[0]);
   const std::vector<double> nodal(n.node_capacity(), drag * h);
   // The first arms are the longest of the bowed line, so the bound can only be larger.

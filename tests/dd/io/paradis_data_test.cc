@@ -1,15 +1,13 @@
-#include "dd/io/paradis_data.h"
-
 #include "dd/io/file_error.h"
+#include "dd/io/paradis_data.h"
 #include "dd/io/paradis_file.h"
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <unistd.h>
 
 namespace
 {
@@ -63,7 +61,7 @@ ParadisReadOptions options_for(bool periodic)
 {
   ParadisReadOptions options;
   options.burgers_magnitude = b_mag;
-  options.periodic          = periodic;
+  options.periodic = periodic;
   options.cubic_orientation = Orientation();
   return options;
 }
@@ -71,7 +69,7 @@ ParadisReadOptions options_for(bool periodic)
 std::string message_of(const fs::path &path, bool strict = false)
 {
   ParadisReadOptions options = options_for(false);
-  options.strict             = strict;
+  options.strict = strict;
   try
   {
     read_paradis_data(path, options);
@@ -90,7 +88,7 @@ void expect_content(const paradis::File &file, const Network &network, double to
   for (std::size_t k = 0; k < file.nodes.size(); ++k)
   {
     const paradis::FileNode &node = file.nodes[k];
-    const NodeIndex i             = *network.find_node(static_cast<ObjectId>(node.tag.second));
+    const NodeIndex i = *network.find_node(static_cast<ObjectId>(node.tag.second));
     EXPECT_LT(network.minimum_image(network.position(i) - b_mag * node.position).norm(), tolerance);
     ASSERT_EQ(network.degree(i), node.arms.size());
     for (const paradis::Arm &arm : node.arms)
@@ -105,16 +103,16 @@ void expect_content(const paradis::File &file, const Network &network, double to
 }
 
 /// The sample files, and whether their lines cross the boundary of the cell.
-const std::vector<std::pair<std::string, bool>> samples = {
-  {"copper_x8", false},      {"form_binaryjunc", false},  {"frank_read_src", false},
-  {"hcp_junct_diss", false}, {"printstress_screw", true}, {"singlelinefem", false}};
+const std::vector<std::pair<std::string, bool>> samples = {{"copper_x8", false},        {"form_binaryjunc", false},
+                                                           {"frank_read_src", false},   {"hcp_junct_diss", false},
+                                                           {"printstress_screw", true}, {"singlelinefem", false}};
 
 TEST_F(ParadisReader, SampleFilesGiveSoundNetworksWithTheirContent)
 {
   for (const auto &[name, periodic] : samples)
   {
     SCOPED_TRACE(name);
-    const fs::path path    = folder / (name + ".data");
+    const fs::path path = folder / (name + ".data");
     const ParadisData data = read_paradis_data(path, options_for(periodic));
     EXPECT_TRUE(data.warnings.empty()) << data.warnings.front();
     expect_content(paradis::parse(path), data.network, 2e-4 * b_mag);
@@ -176,7 +174,7 @@ TEST_F(ParadisReader, OneLoopIsOnOnePlaneAlthoughItsCoordinatesAreRounded)
 TEST_F(ParadisReader, PlanesWithoutRationalNormalHaveNoMillerIndices)
 {
   const Network network = read_paradis_data(folder / "hcp_junct_diss.data", options_for(false)).network;
-  const SegmentIndex s  = *network.find(*network.find_node(1), *network.find_node(2));
+  const SegmentIndex s = *network.find(*network.find_node(1), *network.find_node(2));
   EXPECT_EQ(network.planes()[network.plane(s)].miller, (std::array<int, 3>{0, 0, 0}));
   ParadisReadOptions no_crystal = options_for(false);
   no_crystal.cubic_orientation.reset();
@@ -187,8 +185,8 @@ TEST_F(ParadisReader, PlanesWithoutRationalNormalHaveNoMillerIndices)
 TEST_F(ParadisReader, MillerIndicesFollowTheOrientationOfTheCrystal)
 {
   ParadisReadOptions options = options_for(false);
-  options.cubic_orientation  = Orientation::from_axes(SampleAxis::x, {1, 0, 0}, SampleAxis::y, {0, 1, 1});
-  const Network network      = read_paradis_data(folder / "frank_read_src.data", options).network;
+  options.cubic_orientation = Orientation::from_axes(SampleAxis::x, {1, 0, 0}, SampleAxis::y, {0, 1, 1});
+  const Network network = read_paradis_data(folder / "frank_read_src.data", options).network;
   EXPECT_EQ(network.planes()[PlaneIndex{0}].miller, (std::array<int, 3>{0, 0, 1})); // y + z of the sample
 }
 
@@ -206,8 +204,8 @@ TEST_F(ParadisReader, LoopFoldedIntoThePeriodicCellIsUnfolded)
 {
   // The middle node of the source is given on the other side of the cell.
   const std::string folded = replaced(text_of(folder / "frank_read_src.data"), "17.0000      500", "-34983.0     500");
-  const fs::path path      = write(folded);
-  const ParadisData data   = read_paradis_data(path, options_for(true));
+  const fs::path path = write(folded);
+  const ParadisData data = read_paradis_data(path, options_for(true));
   EXPECT_TRUE(data.warnings.empty());
   EXPECT_NEAR(data.network.position(*data.network.find_node(1))[0], 17 * b_mag, 1e-9);
   EXPECT_EQ(data.network.planes().size(), 1u);
@@ -246,42 +244,43 @@ TEST_F(ParadisErrors, MalformedFilesAreAnsweredWithFileLineValueAndWhatIsAllowed
     std::string text, message;
   };
   const std::vector<Case> cases = {
-    {replaced(good, "dataFileVersion =   4", "dataFileVersion =   2"),
-     ":1: dataFileVersion is 2; versions 4 and 5 are understood."},
-    {replaced(good, "numFileSegments =   1", "numFileSegments =   4"), ":2: numFileSegments is 4; only files in one"},
-    {replaced(good, "dataFileVersion =   4", ""), ": the header lacks the entry \"dataFileVersion\"."},
-    {replaced(good, "minCoordinates = [\n  -1.75", "minCoordinates = [\n  9.75"), "maxCoordinates must exceed"},
-    {replaced(good, "nodeCount =   3", "nodeCount =   4"),
-     "the file ends where the tag of node 4 of 4 (domain) is expected; it is truncated."},
-    {replaced(good, "nodeCount =   3", "nodeCount =   2"),
-     ":44: \"0\" follows the last of the 2 nodes that nodeCount promises"},
-    {replaced(good, "nodeCount =   3", "nodeCount =   three"),
-     ":13: nodeCount is \"three\"; it must be an integer of at most 32 bits."},
-    {good.substr(0, good.size() / 2), "it is truncated."},
-    {good.substr(0, good.size() - 40), "it is truncated."},
-    {"", ":1: the file ends where the entry \"nodalData\" is expected; it is truncated."},
-    {replaced(good, "500.0000        6000", "5OO.0000        6000"),
-     ":36: the position of node 1 of 3 y is \"5OO.0000\"; it must be a number."},
-    {replaced(good, "500.0000        6000", "nan        6000"), "y is nan; it must be finite."},
-    {replaced(good, "0,2       4000", "0,1       4000"), ":44: node 0,1 is given a second time; tags must be unique."},
-    {replaced(good, "6000.0000  2   0", "6000.0000  1   0"), "must be an integer"},
-    {replaced(good, "6000.0000  2   0", "6000.0000  -1   0"), ":39: the number of arms of node 0,1 is -1"},
-    {replaced(good, "0,2      0.5773503000", "0,8      0.5773503000"),
-     ":42: node 0,1 has an arm to node 0,8, which the file does not contain."},
-    {replaced(good, "0,2      0.5773503000", "0,0      0.5773503000"), ":42: node 0,1 has two arms to node 0,0"},
-    {replaced(good, "0,2      0.5773503000", "0,1      0.5773503000"), ":42: node 0,1 has an arm to itself."},
-    {replaced(good, "0,1     -0.5773503000", "0,0     -0.5773503000"),
-     ":42: node 0,1 has an arm to node 0,2, but none leads back"},
-    {replaced(good, "0,1     -0.5773503000", "0,1     -0.6773503000"),
-     ":45: the Burgers vector from node 0,2 to 0,1 is (-0.67735"},
-    {replaced(replaced(good, "0,2      0.5773503000", "0,2      0.6773503000"), "0,1     -0.5773503000",
-              "0,1     -0.6773503000"),
-     ":39: the Burgers vectors of the 2 arms of node 0,1 add up to (0.1, 0, 0)"},
-    {replaced(good, "6000.0000   1   7", "6000.0000   1   0"),
-     ":36: the Burgers vectors of the 1 arms of node 0,0 add up to"},
-    {replaced(good, "6000.0000   1   7", "6000.0000   1   20"), ":36: the constraint of node 0,0 is 20; it must be"},
-    {replaced(good, "17.0000      500.0000", "-4000.0      500.0000"),
-     ":37: nodes 0,0 and 0,1 are at the same place; a connection must have a length."},
+      {replaced(good, "dataFileVersion =   4", "dataFileVersion =   2"),
+       ":1: dataFileVersion is 2; versions 4 and 5 are understood."},
+      {replaced(good, "numFileSegments =   1", "numFileSegments =   4"), ":2: numFileSegments is 4; only files in one"},
+      {replaced(good, "dataFileVersion =   4", ""), ": the header lacks the entry \"dataFileVersion\"."},
+      {replaced(good, "minCoordinates = [\n  -1.75", "minCoordinates = [\n  9.75"), "maxCoordinates must exceed"},
+      {replaced(good, "nodeCount =   3", "nodeCount =   4"),
+       "the file ends where the tag of node 4 of 4 (domain) is expected; it is truncated."},
+      {replaced(good, "nodeCount =   3", "nodeCount =   2"),
+       ":44: \"0\" follows the last of the 2 nodes that nodeCount promises"},
+      {replaced(good, "nodeCount =   3", "nodeCount =   three"),
+       ":13: nodeCount is \"three\"; it must be an integer of at most 32 bits."},
+      {good.substr(0, good.size() / 2), "it is truncated."},
+      {good.substr(0, good.size() - 40), "it is truncated."},
+      {"", ":1: the file ends where the entry \"nodalData\" is expected; it is truncated."},
+      {replaced(good, "500.0000        6000", "5OO.0000        6000"),
+       ":36: the position of node 1 of 3 y is \"5OO.0000\"; it must be a number."},
+      {replaced(good, "500.0000        6000", "nan        6000"), "y is nan; it must be finite."},
+      {replaced(good, "0,2       4000", "0,1       4000"),
+       ":44: node 0,1 is given a second time; tags must be unique."},
+      {replaced(good, "6000.0000  2   0", "6000.0000  1   0"), "must be an integer"},
+      {replaced(good, "6000.0000  2   0", "6000.0000  -1   0"), ":39: the number of arms of node 0,1 is -1"},
+      {replaced(good, "0,2      0.5773503000", "0,8      0.5773503000"),
+       ":42: node 0,1 has an arm to node 0,8, which the file does not contain."},
+      {replaced(good, "0,2      0.5773503000", "0,0      0.5773503000"), ":42: node 0,1 has two arms to node 0,0"},
+      {replaced(good, "0,2      0.5773503000", "0,1      0.5773503000"), ":42: node 0,1 has an arm to itself."},
+      {replaced(good, "0,1     -0.5773503000", "0,0     -0.5773503000"),
+       ":42: node 0,1 has an arm to node 0,2, but none leads back"},
+      {replaced(good, "0,1     -0.5773503000", "0,1     -0.6773503000"),
+       ":45: the Burgers vector from node 0,2 to 0,1 is (-0.67735"},
+      {replaced(replaced(good, "0,2      0.5773503000", "0,2      0.6773503000"), "0,1     -0.5773503000",
+                "0,1     -0.6773503000"),
+       ":39: the Burgers vectors of the 2 arms of node 0,1 add up to (0.1, 0, 0)"},
+      {replaced(good, "6000.0000   1   7", "6000.0000   1   0"),
+       ":36: the Burgers vectors of the 1 arms of node 0,0 add up to"},
+      {replaced(good, "6000.0000   1   7", "6000.0000   1   20"), ":36: the constraint of node 0,0 is 20; it must be"},
+      {replaced(good, "17.0000      500.0000", "-4000.0      500.0000"),
+       ":37: nodes 0,0 and 0,1 are at the same place; a connection must have a length."},
   };
   for (const Case &c : cases)
   {

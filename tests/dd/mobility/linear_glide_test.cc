@@ -1,6 +1,5 @@
-#include "dd/mobility/linear_glide.h"
-
 #include "dd/microstructure/sources.h"
+#include "dd/mobility/linear_glide.h"
 
 #include <gtest/gtest.h>
 
@@ -32,10 +31,10 @@ TEST(LinearGlide, StraightLineGlidesAtStressTimesBurgersOverDrag)
     // Peach-Koehler force per length tau b on arms of 10 nm each: half of each belongs to the middle node.
     const double tau = 40, b = 0.25;
     std::vector<Vec3> force(n.node_capacity(), Vec3::Zero());
-    const Vec3 direction           = edge ? Vec3::UnitX() : Vec3::UnitY();
-    force[middle(n).value]         = tau * b * 10 * direction;
-    const auto v                   = glide_velocities(n, force, law, nullptr);
-    const double expected          = tau * b / (edge ? law.drag_edge : law.drag_screw);
+    const Vec3 direction = edge ? Vec3::UnitX() : Vec3::UnitY();
+    force[middle(n).value] = tau * b * 10 * direction;
+    const auto v = glide_velocities(n, force, law, nullptr);
+    const double expected = tau * b / (edge ? law.drag_edge : law.drag_screw);
     EXPECT_NEAR((v[middle(n).value] - expected * direction).norm(), 0, 1e-12 * expected);
   }
 }
@@ -56,9 +55,8 @@ TEST(LinearGlide, NodeOnTwoPlanesMovesAlongTheirIntersectionAndOnThreeNotAtAll)
 {
   Network n;
   const Vec3 b(0, 0.25, 0);
-  const auto plane = [&](const std::array<int, 3> &m) {
-    return n.planes().find_or_insert(m, Vec3(m[0], m[1], m[2]).normalized(), Vec3(Vec3::Zero()));
-  };
+  const auto plane = [&](const std::array<int, 3> &m)
+  { return n.planes().find_or_insert(m, Vec3(m[0], m[1], m[2]).normalized(), Vec3(Vec3::Zero())); };
   const NodeIndex o = n.insert(Node{}), p = n.insert(Node{Vec3(10, 0, 0), NodeConstraint::pinned}),
                   q = n.insert(Node{Vec3(0, 0, 10), NodeConstraint::pinned}),
                   r = n.insert(Node{Vec3(0, 10, 0), NodeConstraint::pinned});
@@ -72,14 +70,14 @@ TEST(LinearGlide, NodeOnTwoPlanesMovesAlongTheirIntersectionAndOnThreeNotAtAll)
 TEST(LinearGlide, SurfaceNodeSlidesAlongItsFaceAndPlane)
 {
   Network n;
-  const Vec3 normal      = Vec3(1, 1, 1).normalized();
+  const Vec3 normal = Vec3(1, 1, 1).normalized();
   const PlaneIndex plane = n.planes().find_or_insert({1, 1, 1}, normal, Vec3(100, 50, 50));
   const NodeIndex s = n.insert(Node{Vec3(100, 50, 50), NodeConstraint::surface}),
                   p = n.insert(Node{Vec3(50, 75, 75), NodeConstraint::pinned});
   n.insert(Segment{s, p, Vec3(0.2, -0.2, 0), plane});
   const BoxShape box(Vec3::Zero(), Vec3(100, 100, 100));
   const Mat3 projector = glide_projector(n, s, &box);
-  const Vec3 e         = Vec3::UnitX().cross(normal).normalized();
+  const Vec3 e = Vec3::UnitX().cross(normal).normalized();
   EXPECT_NEAR((projector - e * e.transpose()).norm(), 0, 1e-14);
 }
 } // namespace

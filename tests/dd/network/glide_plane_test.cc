@@ -9,8 +9,8 @@ namespace
 {
 using namespace ddfem;
 
-const Vec3 n111   = Vec3(1, 1, 1).normalized();
-const Vec3 n11m1  = Vec3(1, 1, -1).normalized();
+const Vec3 n111 = Vec3(1, 1, 1).normalized();
+const Vec3 n11m1 = Vec3(1, 1, -1).normalized();
 const Vec3 nm11m1 = Vec3(-1, 1, -1).normalized();
 
 TEST(GlidePlanes, SamePlaneWithRoundingInTheOffsetIsOneObject)
@@ -30,7 +30,7 @@ TEST(GlidePlanes, OffsetsOnBothSidesOfAQuantisationBoundaryAreOnePlane)
   for (int k = -50; k <= 50; ++k)
   {
     const double boundary = (k * 1000 + 0.5) * GlidePlanes::offset_quantum;
-    const PlaneIndex p    = planes.find_or_insert({1, 1, 1}, n111, boundary - 1e-9);
+    const PlaneIndex p = planes.find_or_insert({1, 1, 1}, n111, boundary - 1e-9);
     EXPECT_EQ(planes.find_or_insert({1, 1, 1}, n111, boundary + 1e-9), p);
   }
   EXPECT_EQ(planes.size(), 101u);
@@ -63,8 +63,8 @@ TEST(GlidePlanes, PlaneThroughAPointContainsIt)
 TEST(GlidePlanes, PlanesWithoutMillerIndicesAreGroupedByNormal)
 {
   GlidePlanes planes;
-  const Vec3 n       = Vec3(0.3, -1e-10, 0.8).normalized();
-  const Vec3 x       = Vec3(10, 20, 30);
+  const Vec3 n = Vec3(0.3, -1e-10, 0.8).normalized();
+  const Vec3 x = Vec3(10, 20, 30);
   const PlaneIndex p = planes.find_or_insert({0, 0, 0}, n, x);
   EXPECT_EQ(planes.find_or_insert({0, 0, 0}, -n, x), p);
   EXPECT_EQ(planes.find_or_insert({0, 0, 0}, (n + Vec3(0, 2e-10, 0)).normalized(), x), p);
@@ -94,13 +94,13 @@ TEST(GlidePlanes, ProjectionOnSeveralPlanesLiesOnAllAndIsThePointNearest)
   EXPECT_LT((planes.project(p, x) - (x - (x.dot(n111) - 5) * n111)).norm(), 1e-13);
 
   const std::array<PlaneIndex, 4> two = {p, q, p, PlaneIndex{}};
-  const Vec3 y                        = planes.project_on_intersection(two, x);
+  const Vec3 y = planes.project_on_intersection(two, x);
   EXPECT_NEAR(planes.distance(p, y), 0, 1e-12);
   EXPECT_NEAR(planes.distance(q, y), 0, 1e-12);
   EXPECT_NEAR((y - x).dot(*planes.intersection_direction(p, q)), 0, 1e-12); // no motion along the line
 
   const std::array<PlaneIndex, 3> three = {p, q, r};
-  const Vec3 z                          = planes.project_on_intersection(three, x);
+  const Vec3 z = planes.project_on_intersection(three, x);
   for (const PlaneIndex plane : three)
     EXPECT_NEAR(planes.distance(plane, z), 0, 1e-12);
   EXPECT_EQ(planes.project_on_intersection({}, x), x);

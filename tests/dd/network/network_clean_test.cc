@@ -75,8 +75,8 @@ TEST(NetworkClean, ArraysAreCompactAndInMortonOrder)
 
 TEST(NetworkClean, IdsContentAndChecksumAreKept)
 {
-  Network network            = random_network(3, true);
-  const Network before       = network;
+  Network network = random_network(3, true);
+  const Network before = network;
   const std::uint64_t number = network.checksum();
   network.clean();
   EXPECT_EQ(network.checksum(), number);
@@ -105,7 +105,7 @@ TEST(NetworkClean, ChecksumDoesNotDependOnMemoryOrderButOnEveryBit)
   Network a = random_network(3, true), b = random_network(8, false);
   EXPECT_EQ(a.checksum(), b.checksum());
   const NodeIndex i = b.nodes()[17];
-  const Vec3 x      = b.position(i);
+  const Vec3 x = b.position(i);
   b.set_position(i, Vec3(std::nextafter(x[0], 1e9), x[1], x[2]));
   EXPECT_NE(a.checksum(), b.checksum());
   b.set_position(i, x);

@@ -20,9 +20,7 @@ struct ModelSegment
 class Fuzz
 {
 public:
-  explicit Fuzz(unsigned seed)
-    : random_(seed)
-  {}
+  explicit Fuzz(unsigned seed) : random_(seed) {}
 
   void step()
   {
@@ -30,23 +28,13 @@ public:
     {
       case 0:
       case 1:
-      case 2:
-        insert_node();
-        break;
+      case 2: insert_node(); break;
       case 3:
       case 4:
-      case 5:
-        insert_segment();
-        break;
-      case 6:
-        erase_node();
-        break;
-      case 7:
-        erase_segment();
-        break;
-      case 8:
-        move_node();
-        break;
+      case 5: insert_segment(); break;
+      case 6: erase_node(); break;
+      case 7: erase_segment(); break;
+      case 8: move_node(); break;
       default:
         if (pick(20) == 0)
         {
@@ -95,19 +83,18 @@ private:
     std::uniform_real_distribution<double> c(-1, 1);
     return {c(random_), c(random_), c(random_)};
   }
-  template <class Map>
-  ObjectId any_of(const Map &map)
+  template <class Map> ObjectId any_of(const Map &map)
   {
     return std::next(map.begin(), static_cast<std::ptrdiff_t>(pick(map.size())))->first;
   }
 
   void insert_node()
   {
-    const Vec3 x      = point();
+    const Vec3 x = point();
     const NodeIndex i = network_.insert(Node{x});
     ASSERT_FALSE(nodes_.contains(network_.id(i)));
     nodes_[network_.id(i)] = x;
-    held_[i]               = network_.id(i);
+    held_[i] = network_.id(i);
   }
   void insert_segment()
   {
@@ -115,9 +102,11 @@ private:
       return;
     const ObjectId a = any_of(nodes_), b = any_of(nodes_);
     const NodeIndex i = *network_.find_node(a), j = *network_.find_node(b);
-    const bool joined = std::ranges::any_of(segments_, [&](const auto &entry) {
-      return (entry.second.start == a && entry.second.end == b) || (entry.second.start == b && entry.second.end == a);
-    });
+    const bool joined = std::ranges::any_of(segments_,
+                                            [&](const auto &entry) {
+                                              return (entry.second.start == a && entry.second.end == b) ||
+                                                     (entry.second.start == b && entry.second.end == a);
+                                            });
     const Vec3 burgers = point();
     if (a == b || joined)
     {
@@ -154,7 +143,7 @@ private:
     if (nodes_.empty())
       return;
     const ObjectId id = any_of(nodes_);
-    nodes_[id]        = point();
+    nodes_[id] = point();
     network_.set_position(*network_.find_node(id), nodes_[id]);
   }
 

@@ -1,7 +1,6 @@
 #include "dd/network/network.h"
 
 #include <gtest/gtest.h>
-
 #include <omp.h>
 
 #include <numeric>
@@ -23,8 +22,8 @@ struct SquareLoop
 
   SquareLoop()
   {
-    plane                         = network.planes().find_or_insert({0, 0, 1}, Vec3(0, 0, 1), 0.0);
-    const std::array<Vec3, 4> xs  = {Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(10, 10, 0), Vec3(0, 10, 0)};
+    plane = network.planes().find_or_insert({0, 0, 1}, Vec3(0, 0, 1), 0.0);
+    const std::array<Vec3, 4> xs = {Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(10, 10, 0), Vec3(0, 10, 0)};
     for (std::size_t k = 0; k < 4; ++k)
       nodes[k] = network.insert(Node{xs[k]});
     for (std::size_t k = 0; k < 4; ++k)
@@ -42,8 +41,8 @@ std::string all_messages(const Network &network)
 
 void expect_message(const Network &network, const std::string &part)
 {
-  EXPECT_NE(all_messages(network).find(part), std::string::npos) << "wanted: " << part << "\ngot: "
-                                                                 << all_messages(network);
+  EXPECT_NE(all_messages(network).find(part), std::string::npos)
+      << "wanted: " << part << "\ngot: " << all_messages(network);
 }
 
 TEST(Network, InsertedObjectsAreReadBackAndCounted)
@@ -106,7 +105,8 @@ TEST(Network, ArmsKeepTheOrderOfInsertionBeyondTheInlineCapacity)
   std::vector<SegmentIndex> expected;
   for (int k = 0; k < 9; ++k)
     expected.push_back(network.insert(Segment{hub, network.insert(Node{Vec3(k + 1, 0, 0)}), b_x, {}}));
-  const auto equal = [&]() {
+  const auto equal = [&]()
+  {
     const auto arms = network.connected_segments(hub);
     return std::equal(arms.begin(), arms.end(), expected.begin(), expected.end());
   };
@@ -124,7 +124,7 @@ TEST(Network, ArmsKeepTheOrderOfInsertionBeyondTheInlineCapacity)
 TEST(Network, ImpossibleEditsAreRefusedAndLeaveNoTrace)
 {
   SquareLoop loop;
-  Network &network           = loop.network;
+  Network &network = loop.network;
   const std::uint64_t before = network.checksum();
   EXPECT_THROW(network.erase(loop.nodes[0]), std::invalid_argument);
   EXPECT_THROW(network.insert(Segment{loop.nodes[1], loop.nodes[0], b_x, loop.plane}), std::invalid_argument);
@@ -159,7 +159,7 @@ TEST(Network, PhysicalNodesAreEndsJunctionsConstraintsAndChangesOfBurgersVectorO
   for (const NodeIndex i : network.nodes())
     EXPECT_FALSE(network.is_physical(i));
   Segment changed = network.get(loop.segments[0]);
-  changed.plane   = network.planes().find_or_insert({0, 1, 0}, Vec3(0, 1, 0), 0.0);
+  changed.plane = network.planes().find_or_insert({0, 1, 0}, Vec3(0, 1, 0), 0.0);
   network.set(loop.segments[0], changed); // cross-slipped: both ends see two planes
   EXPECT_TRUE(network.is_physical(loop.nodes[0]));
   EXPECT_TRUE(network.is_physical(loop.nodes[1]));
@@ -174,8 +174,8 @@ TEST(Network, PeriodicSegmentRunsToTheNearestImageOfItsEnd)
 {
   Network network;
   network.set_period(Vec3(100, 0, 0));
-  const NodeIndex a    = network.insert(Node{Vec3(95, 0, 0), NodeConstraint::pinned});
-  const NodeIndex b    = network.insert(Node{Vec3(5, 70, 0), NodeConstraint::pinned});
+  const NodeIndex a = network.insert(Node{Vec3(95, 0, 0), NodeConstraint::pinned});
+  const NodeIndex b = network.insert(Node{Vec3(5, 70, 0), NodeConstraint::pinned});
   const SegmentIndex s = network.insert(Segment{a, b, b_x, {}});
   EXPECT_EQ(network.direction(s), Vec3(10, 70, 0));
   EXPECT_THROW(network.set_period(Vec3(-1, 0, 0)), std::invalid_argument);
@@ -197,14 +197,12 @@ TEST(Network, TraversalsVisitEachLiveObjectOnceWithAnyNumberOfThreads)
   {
     omp_set_num_threads(n_threads);
     std::vector<int> of_node(network.node_capacity()), of_segment(network.segment_capacity()),
-      of_star(network.node_capacity()), of_loop(network.node_capacity());
+        of_star(network.node_capacity()), of_loop(network.node_capacity());
     network.for_each_node([&](NodeIndex i) { ++of_node[i.value]; });
-    network.for_each_segment([&](SegmentIndex s, NodeIndex start, NodeIndex end) {
-      of_segment[s.value] += start == network.start(s) && end == network.end(s) ? 1 : 100;
-    });
-    network.for_each_node_with_segments([&](NodeIndex i, std::span<const SegmentIndex> arms) {
-      of_star[i.value] += arms.size() == network.degree(i) ? 1 : 100;
-    });
+    network.for_each_segment([&](SegmentIndex s, NodeIndex start, NodeIndex end)
+                             { of_segment[s.value] += start == network.start(s) && end == network.end(s) ? 1 : 100; });
+    network.for_each_node_with_segments([&](NodeIndex i, std::span<const SegmentIndex> arms)
+                                        { of_star[i.value] += arms.size() == network.degree(i) ? 1 : 100; });
 #pragma omp parallel
     {
 #pragma omp for
@@ -227,10 +225,12 @@ TEST(Network, TraversalsVisitEachLiveObjectOnceWithAnyNumberOfThreads)
 TEST(Network, ExceptionOfATraversedFunctionReachesTheCaller)
 {
   SquareLoop loop;
-  EXPECT_THROW(loop.network.for_each_node([](NodeIndex i) {
-    if (i.value == 2)
-      throw std::domain_error("two");
-  }),
+  EXPECT_THROW(loop.network.for_each_node(
+                   [](NodeIndex i)
+                   {
+                     if (i.value == 2)
+                       throw std::domain_error("two");
+                   }),
                std::domain_error);
 }
 

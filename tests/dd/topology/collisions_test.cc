@@ -1,8 +1,7 @@
-#include "dd/topology/proximity_collisions.h"
-
 #include "dd/topology/line_operations.h"
 #include "dd/topology/motion.h"
 #include "dd/topology/node_splitting.h"
+#include "dd/topology/proximity_collisions.h"
 #include "dd/topology/remesh.h"
 #include "topology_fixture.h"
 
@@ -33,19 +32,18 @@ void split(TopologyContext &c)
 {
   const SplittingModel model{aluminium, aluminium.a, {0.01, 0.01}};
   const ForceSettings settings{aluminium, aluminium.a, 1e-5, RayDirection::normal};
-  split_nodes(c, model, [&](const Network &n) {
-    return compute_nodal_forces(n, settings, ForceEnvironment{}, MPI_COMM_SELF);
-  });
+  split_nodes(c, model,
+              [&](const Network &n) { return compute_nodal_forces(n, settings, ForceEnvironment{}, MPI_COMM_SELF); });
 }
 
 TEST(ProximityCollisions, FastLinesDoNotPassThroughEachOther)
 {
   // Two crossing lines on planes 0.5 nm apart meet head-on with 40 nm of relative motion in the step.
   TopologyFixture f;
-  const auto one = add_line(f.network, {Vec3(-20, -20, 0), Vec3(-20, 20, 0)}, b, f.horizontal(), false,
-                            NodeConstraint::pinned);
-  const auto two = add_line(f.network, {Vec3(5, -20, 0), Vec3(3, 20, 0)}, b, f.horizontal(), false,
-                            NodeConstraint::pinned);
+  const auto one =
+      add_line(f.network, {Vec3(-20, -20, 0), Vec3(-20, 20, 0)}, b, f.horizontal(), false, NodeConstraint::pinned);
+  const auto two =
+      add_line(f.network, {Vec3(5, -20, 0), Vec3(3, 20, 0)}, b, f.horizontal(), false, NodeConstraint::pinned);
   for (const NodeIndex i : {one[0], one[1], two[0], two[1]})
     f.network.set_constraint(i, NodeConstraint::free);
   auto c = f.context();
@@ -58,11 +56,11 @@ TEST(ProximityCollisions, FastLinesDoNotPassThroughEachOther)
 TEST(ProximityCollisions, OppositeParallelLinesAnnihilate)
 {
   TopologyFixture f;
-  const auto up   = add_line(f.network, {Vec3(0, -30, 0), Vec3(0, 0, 0), Vec3(0, 30, 0)}, b, f.horizontal(), false,
-                             NodeConstraint::free);
+  const auto up = add_line(f.network, {Vec3(0, -30, 0), Vec3(0, 0, 0), Vec3(0, 30, 0)}, b, f.horizontal(), false,
+                           NodeConstraint::free);
   const auto down = add_line(f.network, {Vec3(6, 30, 0), Vec3(6, 0, 0), Vec3(6, -30, 0)}, b, f.horizontal(), false,
                              NodeConstraint::free);
-  auto c          = f.context();
+  auto c = f.context();
   for (const NodeIndex i : up)
     c.remaining[i.value] = Vec3(5, 0, 0);
   move_and_collide(c);
@@ -77,10 +75,12 @@ TEST(ProximityCollisions, TwoBowedArmsOfASourceReconnectIntoALoopAndALine)
 {
   // Outside and inside of a kidney-shaped source just before it closes: two antiparallel bulges on one plane.
   TopologyFixture f;
-  const auto lower = add_line(f.network, {Vec3(-40, -30, 0), Vec3(-15, -10, 0), Vec3(0, -0.5, 0), Vec3(15, -10, 0), Vec3(40, -30, 0)},
-                              b, f.horizontal(), false, NodeConstraint::pinned);
-  const auto upper = add_line(f.network, {Vec3(40, 30, 0), Vec3(15, 10, 0), Vec3(0, 0.5, 0), Vec3(-15, 10, 0), Vec3(-40, 30, 0)},
-                              b, f.horizontal(), false, NodeConstraint::pinned);
+  const auto lower =
+      add_line(f.network, {Vec3(-40, -30, 0), Vec3(-15, -10, 0), Vec3(0, -0.5, 0), Vec3(15, -10, 0), Vec3(40, -30, 0)},
+               b, f.horizontal(), false, NodeConstraint::pinned);
+  const auto upper =
+      add_line(f.network, {Vec3(40, 30, 0), Vec3(15, 10, 0), Vec3(0, 0.5, 0), Vec3(-15, 10, 0), Vec3(-40, 30, 0)}, b,
+               f.horizontal(), false, NodeConstraint::pinned);
   auto c = f.context();
   c.remaining[lower[2].value] = Vec3(0, 0.1, 0);
   collide(c);
@@ -91,7 +91,7 @@ TEST(ProximityCollisions, TwoBowedArmsOfASourceReconnectIntoALoopAndALine)
   // The lines now run left-left and right-right: from a pinned node one comes back on the same side.
   for (const NodeIndex end : {lower.front(), lower.back()})
   {
-    NodeIndex i    = end;
+    NodeIndex i = end;
     SegmentIndex s = f.network.connected_segments(end)[0];
     while (f.network.constraint(i = f.network.other_end(s, i)) != NodeConstraint::pinned)
     {
@@ -107,13 +107,15 @@ TEST(ProximityCollisions, TwoBowedArmsOfASourceReconnectIntoALoopAndALine)
 TEST(ProximityCollisions, LinesOnDifferentPlanesMeetOnTheIntersectionOfTheirPlanes)
 {
   TopologyFixture f;
-  const Vec3 n2          = Vec3(1, 1, 1).normalized();
+  const Vec3 n2 = Vec3(1, 1, 1).normalized();
   const PlaneIndex other = f.network.planes().find_or_insert({1, 1, 1}, n2, Vec3(0, 0, 0.2));
-  add_line(f.network, {Vec3(-20, 0, 0), Vec3(20, 0, 0)}, Vec3(0, 0.25, 0), f.horizontal(), false, NodeConstraint::pinned);
+  add_line(f.network, {Vec3(-20, 0, 0), Vec3(20, 0, 0)}, Vec3(0, 0.25, 0), f.horizontal(), false,
+           NodeConstraint::pinned);
   const Vec3 t = n2.cross(Vec3(1, -0.2, 0)).normalized();
   const Vec3 x = f.network.planes().project(other, Vec3(0, 0, 0.2));
-  const auto second = add_line(f.network, {x - 20 * t, x, x + 20 * t}, Vec3(0.2, -0.2, 0), other, false, NodeConstraint::pinned);
-  auto c       = f.context();
+  const auto second =
+      add_line(f.network, {x - 20 * t, x, x + 20 * t}, Vec3(0.2, -0.2, 0), other, false, NodeConstraint::pinned);
+  auto c = f.context();
   c.remaining[second[1].value] = Vec3(0, 0, -1);
   collide(c);
   ASSERT_EQ(f.counts.collisions, 1U);
@@ -132,7 +134,7 @@ TEST(ProximityCollisions, RecedingLinesAreLeftAlone)
   TopologyFixture f;
   add_line(f.network, {Vec3(0, -20, 0), Vec3(0, 20, 0)}, b, f.horizontal(), false, NodeConstraint::pinned);
   const auto second =
-    add_line(f.network, {Vec3(1, 20, 0), Vec3(1, -20, 0)}, b, f.horizontal(), false, NodeConstraint::pinned);
+      add_line(f.network, {Vec3(1, 20, 0), Vec3(1, -20, 0)}, b, f.horizontal(), false, NodeConstraint::pinned);
   auto c = f.context();
   for (const NodeIndex i : second)
     c.remaining[i.value] = Vec3(1, 0, 0);
@@ -169,10 +171,10 @@ TEST(Surface, ImpenetrableFaceStopsALineAndLetsItSlide)
   BoxShape box(Vec3::Zero(), Vec3(100, 100, 100));
   box.set_face_kind(1, FaceKind::impenetrable);
   TopologyFixture f;
-  f.shape          = &box;
-  const auto nodes = add_line(f.network, {Vec3(95, 20, 50), Vec3(95, 50, 50), Vec3(95, 80, 50)}, b,
-                              f.horizontal(50), false, NodeConstraint::pinned);
-  auto c           = f.context();
+  f.shape = &box;
+  const auto nodes = add_line(f.network, {Vec3(95, 20, 50), Vec3(95, 50, 50), Vec3(95, 80, 50)}, b, f.horizontal(50),
+                              false, NodeConstraint::pinned);
+  auto c = f.context();
   c.remaining[nodes[1].value] = Vec3(20, 3, 0);
   move_nodes(c, 1.0);
   EXPECT_NEAR(f.network.position(nodes[1])[0], 100, 1e-9);
@@ -185,10 +187,10 @@ TEST(Surface, LineThatReachesAFreeFaceIsCutAndContinuesAsTwoRays)
 {
   const BoxShape box(Vec3::Zero(), Vec3(100, 100, 100));
   TopologyFixture f;
-  f.shape          = &box;
-  const auto nodes = add_line(f.network, {Vec3(50, 20, 50), Vec3(95, 50, 50), Vec3(50, 80, 50)}, b,
-                              f.horizontal(50), false, NodeConstraint::pinned);
-  auto c           = f.context();
+  f.shape = &box;
+  const auto nodes = add_line(f.network, {Vec3(50, 20, 50), Vec3(95, 50, 50), Vec3(50, 80, 50)}, b, f.horizontal(50),
+                              false, NodeConstraint::pinned);
+  auto c = f.context();
   c.remaining[nodes[1].value] = Vec3(20, 0, 0);
   move_nodes(c, 1.0);
   EXPECT_EQ(f.counts.surface_exits, 1U);

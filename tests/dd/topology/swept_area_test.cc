@@ -27,7 +27,7 @@ TEST(SweptArea, GrowingLoopSweepsTheDifferenceOfItsAreas)
 {
   TopologyFixture f;
   const auto nodes = add_line(f.network, polygon(50, 24), b, f.horizontal(), true, NodeConstraint::free);
-  auto c           = f.context();
+  auto c = f.context();
   for (const NodeIndex i : nodes)
     c.remaining[i.value] = 0.2 * f.network.position(i);
   move_nodes(c, 1.0);
@@ -42,7 +42,7 @@ TEST(SweptArea, PlasticStrainIsTheWorkOfThePeachKoehlerForce)
   TopologyFixture f;
   const PlaneIndex plane = f.network.planes().find_or_insert({0, 1, 0}, Vec3::UnitY(), Vec3(Vec3::Zero()));
   const auto nodes = add_line(f.network, {Vec3(0, 0, 0), Vec3(0, 0, 20)}, b, plane, false, NodeConstraint::pinned);
-  auto c           = f.context();
+  auto c = f.context();
   for (const NodeIndex i : nodes)
     move_node(c, i, f.network.position(i) + Vec3(3, 0, 0));
   const SymTensor strain = plastic_strain_volume(f.swept);
@@ -70,7 +70,8 @@ TEST(SweptArea, DisplacementOfTheSumOfMovesIsThatOfTheFinalLoop)
   f.network.check_invariants();
   EXPECT_GT(f.counts.coarsenings + f.counts.refinements, 0U);
   const SweptArea at_once = grown_area(f.network, nullptr, RayDirection::normal);
-  const auto displacement = [](const SweptArea &area, const Vec3 &x) {
+  const auto displacement = [](const SweptArea &area, const Vec3 &x)
+  {
     Vec3 u = Vec3::Zero();
     for (const SweptTriangle &t : area.triangles())
       u += triangle_displacement(0.3, x, t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);
@@ -106,7 +107,8 @@ TEST(SweptArea, LoopThatHasLeftTheGrainHasSweptTheWholeSection)
     // The box ends in corners, which the last chords cut at a tenth of L_min^2; the circle is cut by halved chords.
     const double section = round ? M_PI * 55 * 55 : 120 * 100;
     EXPECT_NEAR(inside_area(f.swept, b)[2], section, 0.005 * section);
-    const auto displacement = [&](const Vec3 &x) {
+    const auto displacement = [&](const Vec3 &x)
+    {
       Vec3 u = Vec3::Zero();
       for (const SweptTriangle &t : f.swept.triangles())
         u += triangle_displacement(0.3, x, t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);

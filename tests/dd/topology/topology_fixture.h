@@ -39,7 +39,8 @@ inline Vec3 inside_area(const SweptArea &swept, const Vec3 &b)
   Vec3 a = Vec3::Zero();
   for (const SweptTriangle &t : swept.triangles())
     if (t.inside)
-      a += 0.5 * t.burgers.dot(b) / b.squaredNorm() * (t.vertices[1].value - t.vertices[0].value).cross(t.vertices[2].value - t.vertices[0].value);
+      a += 0.5 * t.burgers.dot(b) / b.squaredNorm() *
+           (t.vertices[1].value - t.vertices[0].value).cross(t.vertices[2].value - t.vertices[0].value);
   return a;
 }
 } // namespace ddfem
