@@ -161,11 +161,6 @@ void add_microstructure(std::vector<ParameterEntry> &t)
        "sample coordinates in m, length in m, angle between line and Burgers vector in degrees (0 screw, 90 edge). "
        "Example: 1 1 1 / -1 0 1 / 0 0 5e-7 / 2e-7 / 90."});
   t.push_back(
-      {s, "Source arms", "none", one_of("none|straight"), "",
-       "What lines that end inside the crystal are attached to: nothing, or fixed straight arms that continue the "
-       "initial "
-       "line to infinity and act on the network, as in Foreman, Phil. Mag. 15 (1967) 1011. Not in a periodic cell."});
-  t.push_back(
       {s, "Loops", "", words(), "",
        "Closed loops separated by ';', each as 'plane / Burgers direction / centre / radius / corners': regular "
        "polygons in the given plane. A Burgers vector out of the plane makes a prismatic loop, whose sides glide on "

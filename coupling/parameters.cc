@@ -224,9 +224,6 @@ void read_loops(const InputDeck &deck, Parameters &p)
 void read_microstructure(const InputDeck &deck, Parameters &p)
 {
   read_sources(deck, p);
-  p.straight_arms = deck.text("Microstructure/Source arms") == "straight";
-  if (p.straight_arms && p.mode == Mode::periodic)
-    deck.reject("Microstructure/Source arms", "arms to infinity do not fit into a periodic cell");
   read_loops(deck, p);
   if (const std::string file = deck.text("Microstructure/Network file"); !file.empty())
   {

@@ -89,8 +89,7 @@ struct Parameters
   LoadingParameters loading;
   std::vector<FrankReadSource> sources;
   std::vector<PolygonLoop> loops;
-  bool straight_arms = false; ///< lines that end inside the crystal continue as fixed straight arms
-  std::string network_file;   ///< absolute; empty: none
+  std::string network_file; ///< absolute; empty: none
   TopologySettings topology;
   double core_cutoff_radius = 0; ///< nm
   double pair_tolerance = 0;

@@ -49,8 +49,6 @@ Simulation::Simulation(const Parameters &p, MPI_Comm comm)
     : parameters(p), communicator(comm), dislocations(build_network(p)),
       product_plane(product_plane_rule(p.slip_systems())), integrator(p.integrator)
 {
-  if (p.straight_arms)
-    fixed_arms = straight_arms(dislocations);
   if (p.mode == Mode::finite)
   {
     finite_grain = std::make_unique<FiniteGrain>(p.grain, p.medium, communicator);
@@ -99,7 +97,6 @@ ForceEnvironment Simulation::environment()
   e.cell = images ? &parameters.cell : nullptr;
   e.images = images.get();
   e.correction = &correction;
-  e.fixed_arms = fixed_arms;
   return e;
 }
 
@@ -266,9 +263,7 @@ NodalForces Simulation::forces()
 
 std::vector<SymTensor> Simulation::infinite_stress(const std::vector<Vec3> &points)
 {
-  LineSystem lines = line_system();
-  lines.add_rays(fixed_arms);
-  return lines.stress(points);
+  return line_system().stress(points);
 }
 
 std::vector<SymTensor> Simulation::correction_stress(const std::vector<Vec3> &points) const

@@ -79,7 +79,6 @@ private:
   std::unique_ptr<FiniteGrain> finite_grain;
   std::unique_ptr<PeriodicImages> images;
   OpenLines initial_open_lines;
-  std::vector<VirtualRay> fixed_arms;
   ProductPlane product_plane;
   StabilisedRungeKutta integrator;
   SegmentPointStress correction;

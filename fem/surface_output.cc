@@ -1,6 +1,7 @@
 #include "fem/surface_output.h"
 
 #include <deal.II/base/data_out_base.h>
+#include <deal.II/grid/reference_cell.h>
 
 #include <cmath>
 #include <cstdio>
@@ -43,6 +44,7 @@ private:
     Patch patch;
     patch.patch_index = static_cast<unsigned>(patches.size());
     patch.n_subdivisions = grid.degree;
+    patch.reference_cell = dealii::ReferenceCells::Quadrilateral; // otherwise the writer makes cells without corners
     patch.points_are_available = true;
     patch.data.reinit(n_rows + n_coordinates, n);
     for (unsigned a = 0; a < n; ++a)

@@ -35,11 +35,6 @@ LineSystem::LineSystem(const IsotropicMedium &medium_, const Network &network, c
   }
 }
 
-void LineSystem::add_rays(std::span<const VirtualRay> rays)
-{
-  virtual_ray_list.insert(virtual_ray_list.end(), rays.begin(), rays.end());
-}
-
 void LineSystem::close(const OpenLines &open)
 {
   for (const StraightLine &l : open.lines)

@@ -23,8 +23,6 @@ public:
   LineSystem(const IsotropicMedium &medium, const Network &network, const GrainShape *shape, RayDirection rule,
              const PeriodicCell *cell, PeriodicImages *images);
 
-  /// Adds fixed rays to the sources.
-  void add_rays(std::span<const VirtualRay> rays);
   /// Adds @p open with opposite Burgers vectors: the sources of the field become closed lines (see OpenLines).
   void close(const OpenLines &open);
 

@@ -116,9 +116,8 @@ std::vector<Vec3> segment_points(const Network &network)
 NodalForces compute_nodal_forces(const Network &network, const ForceSettings &settings,
                                  const ForceEnvironment &environment, MPI_Comm comm, const bool with_contributions)
 {
-  LineSystem system(settings.medium, network, environment.shape, settings.ray_direction, environment.cell,
-                    environment.images);
-  system.add_rays(environment.fixed_arms);
+  const LineSystem system(settings.medium, network, environment.shape, settings.ray_direction, environment.cell,
+                          environment.images);
   std::vector<Contributions> by_line(system.lines().size());
   const IndexRange owned = owned_range(by_line.size(), comm);
 #pragma omp parallel for schedule(dynamic, 4)

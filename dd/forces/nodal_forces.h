@@ -7,7 +7,6 @@
 #include <mpi.h>
 
 #include <array>
-#include <span>
 #include <vector>
 
 namespace ddfem
@@ -19,7 +18,7 @@ enum class ForceContribution : std::uint8_t
   self,       ///< elastic self force of each segment
   core,       ///< core energy (line tension)
   pairs,      ///< other segments of the network
-  rays,       ///< virtual rays outside a finite grain, fixed arms
+  rays,       ///< virtual rays outside a finite grain
   images,     ///< periodic images
   correction, ///< FEM correction field
 };
@@ -53,7 +52,6 @@ struct ForceEnvironment
   const PeriodicCell *cell = nullptr;
   PeriodicImages *images = nullptr;
   const SegmentPointStress *correction = nullptr; ///< empty pointer: none
-  std::span<const VirtualRay> fixed_arms;         ///< see straight_arms()
 };
 
 /// Nodal forces, MPa nm^2 (= 1e-12 N), sample frame, indexed by NodeIndex::value.

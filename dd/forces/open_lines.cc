@@ -34,19 +34,6 @@ std::vector<bool> nodes_of_open_lines(const Network &network)
 }
 } // namespace
 
-std::vector<VirtualRay> straight_arms(const Network &network)
-{
-  std::vector<VirtualRay> arms;
-  for (const NodeIndex i : network.nodes())
-    if (network.degree(i) == 1 && is_open_end(network, i))
-    {
-      const SegmentIndex s = network.connected_segments(i)[0];
-      const Vec3 inward = (network.start(s) == i ? 1.0 : -1.0) * network.direction(s).normalized();
-      arms.push_back({network.position(i), -inward, ray_burgers(network, i)});
-    }
-  return arms;
-}
-
 OpenLines open_lines(const Network &network, const GrainShape *shape, const RayDirection rule)
 {
   const std::vector<bool> marked = nodes_of_open_lines(network);

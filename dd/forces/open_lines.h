@@ -25,11 +25,6 @@ struct OpenLines
   std::vector<VirtualRay> rays;
 };
 
-/// Straight pinned arms that continue the lines at their open ends to infinity: rays from the open ends against the direction of
-/// their single segment (a bowing segment of an infinite straight line; Foreman, Phil. Mag. 15 (1967) 1011). They act on the
-/// network but do not move, and are no part of the boundary-value problem: their field does not change.
-std::vector<VirtualRay> straight_arms(const Network &network);
-
 /// Collects the connected components of @p network that hold a pinned node at which Burgers vectors do not balance.
 /// @p shape may be null (no rays).
 OpenLines open_lines(const Network &network, const GrainShape *shape, RayDirection rule);
