@@ -11,6 +11,7 @@ Two models of the core:
   brown   singular theory; the self-stress is the mean of those at the distances +r0 and -r0 in the plane (Brown, Phil. Mag. 10
           (1964) 441; used by Foreman, Phil. Mag. 15 (1967) 1011)
 Two surroundings: nothing beyond the pinned ends (as in ddfem), or straight arms that continue the segment to infinity (Foreman).
+With arms and L < 500 core radii the line folds back onto its arms before the stress has a maximum; the solver then stops.
 """
 import argparse
 
@@ -152,18 +153,23 @@ def critical_stress(character, nu, core, model='cai', arms=False, pieces=16, ste
     source, tau, best = Source(character, nu, core, model, arms, pieces), 0.5, []
     area = 0.0
     while area < 3.0:
-        area += step
         source.equal_spacing()
-        tau, ok = source.solve(area, tau)
+        previous = source.x.copy()
+        trial, ok = source.solve(area + step, tau)
         if not ok:
-            raise RuntimeError(f'no equilibrium found: {character}, core {core}, area {area}')
+            source.x, step = previous, step / 2
+            if step < 2e-3:
+                raise RuntimeError(f'no equilibrium found: {character}, core {core}, area {area}')
+            continue
+        area, tau = area + step, trial
         best.append((area, tau))
         if len(best) > 2 and tau < best[-2][1]:
             break
     if history is not None:
         history.extend(best)
-    (_, y0), (_, y1), (_, y2) = best[-3:]        # vertex of the parabola through the three last points
-    return y1 + (y2 - y0) ** 2 / (8 * (2 * y1 - y0 - y2))
+    x, y = np.array(best[-3:]).T                 # vertex of the parabola through the three last points
+    c = np.polyfit(x - x[1], y, 2)
+    return c[2] - c[1] ** 2 / (4 * c[0])
 
 
 if __name__ == '__main__':
@@ -171,13 +177,15 @@ if __name__ == '__main__':
     parser.add_argument('--nu', type=float, default=1 / 3, help="Poisson's ratio (default 1/3)")
     parser.add_argument('--pieces', type=int, default=16, help='straight pieces of the line (default 16)')
     arguments = parser.parse_args()
-    ratios = np.array([100., 300., 1000., 3000., 10000.])
-    print(f'nu = {arguments.nu:.4g}; tau L 2 pi / (mu b), and the least-squares A (ln(L / core) + B)')
-    print('model  arms  character  ' + '  '.join(f'L/core={r:<6.0f}' for r in ratios) + '   A       B')
+    ratios = np.array([1000., 2000., 5000., 10000.])
+    print(f'nu = {arguments.nu:.4g}; tau_c in mu b / (2 pi L), and B of tau_c = A (ln(L / core) + B) with A = 1 (edge), '
+          '1/(1-nu) (screw)')
+    print('core   arms      character  ' + '  '.join(f'L/core = {r:<6.0f}' for r in ratios) + '   B')
     for model in ('cai', 'brown'):
         for arms in (False, True):
-            for character in ('edge', 'screw'):
-                tau = [critical_stress(character, arguments.nu, 1 / r, model, arms, arguments.pieces) for r in ratios]
-                slope, offset = np.polyfit(np.log(ratios), tau, 1)
-                print(f'{model:6s} {str(arms):5s} {character:9s}  ' + '  '.join(f'{x:13.3f}' for x in tau)
-                      + f'   {slope:.3f}  {offset / slope:+.3f}', flush=True)
+            for character, factor in (('edge', 1.0), ('screw', 1 / (1 - arguments.nu))):
+                tau = np.array([critical_stress(character, arguments.nu, 1 / r, model, arms, arguments.pieces)
+                                for r in ratios])
+                b = tau / factor - np.log(ratios)
+                print(f'{model:6s} {"straight" if arms else "none":8s}  {character:9s}  '
+                      + '  '.join(f'{x:15.3f}' for x in tau) + f'   {b.mean():+.2f} ({b[0]:+.2f} ... {b[-1]:+.2f})', flush=True)

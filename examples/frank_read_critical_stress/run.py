@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """Finds the critical stress of Frank-Read sources by bisection and writes DIR/critical_stress.csv.
 
-Two kinds of source, edge and screw: 'arms', a segment of a straight line whose continuations on both sides are held in place
-(the geometry of Foreman, Phil. Mag. 15 (1967) 1011; arms of 3 L), and 'isolated', a segment that ends at two pinned nodes.
 Every trial is a run of ddfem at constant resolved shear stress. The source has operated when it has swept 1.5 L^2 (the
 unstable shape has swept less than L^2), and has not when all nodes are slower than 5e-4 tau b / B. The stresses of the
 last two trials that differ in outcome enclose the critical stress.
@@ -18,10 +16,9 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-KINDS = ['arms', 'isolated']
 LENGTHS = [100e-9, 200e-9, 400e-9, 800e-9, 1600e-9]
 DRAG = 2e-5                                      # Pa s, aluminium
-COLUMNS = ['surroundings', 'character', 'length [m]', 'maximum segment [m]', 'lower stress [Pa]', 'upper stress [Pa]',
+COLUMNS = ['character', 'length [m]', 'maximum segment [m]', 'lower stress [Pa]', 'upper stress [Pa]',
            'critical stress [Pa]', 'shear modulus [Pa]', 'poisson ratio [-]', 'burgers vector [m]', 'trials', 'wall time [s]']
 
 
@@ -34,38 +31,19 @@ def medium(program):
     return float(m[1]) * 1e9, float(m[2]), float(m[3]) * 1e-9
 
 
-def estimate(surroundings, character, length, mu, nu, b):
-    """First guess, close to what quasi_static.py finds."""
-    offset = {'arms': {'edge': -1.5, 'screw': -1.9}, 'isolated': {'edge': 0.1, 'screw': -0.8}}[surroundings][character]
-    return mu * b / (2 * math.pi * length) * (math.log(length / b) + offset) / (1 if character == 'edge' else 1 - nu)
+def estimate(character, length, mu, nu, b):
+    """First guess: A (mu b / 2 pi L) (ln(L/b) + B) with A of the line-tension model and a rough B."""
+    factor, offset = (1, 0.0) if character == 'edge' else (1 / (1 - nu), -0.7)
+    return factor * mu * b / (2 * math.pi * length) * (math.log(length / b) + offset)
 
 
-def write_line_with_arms(path, character, length, max_segment, b):
-    """ParaDiS file of a straight line through the origin, free between -L/2 and L/2 and pinned up to 3.5 L on both sides."""
-    direction = (0, 1) if character == 'edge' else (1, 0)
-    pieces = math.ceil(length / (0.75 * max_segment) - 1e-9)
-    arm = math.ceil(3 * length / (0.75 * max_segment) - 1e-9)
-    s = [-3.5 + 3 * k / arm for k in range(arm)] + [-0.5 + k / pieces for k in range(pieces)] + \
-        [0.5 + 3 * k / arm for k in range(arm + 1)]
-    box = 5 * length / b
-    lines = ['dataFileVersion = 4', 'numFileSegments = 1', f'minCoordinates = [ {-box} {-box} {-box} ]',
-             f'maxCoordinates = [ {box} {box} {box} ]', f'nodeCount = {len(s)}', 'dataDecompType = 1',
-             'dataDecompGeometry = [ 1 1 1 ]', f'domainDecomposition = {-box} {-box} {-box} {box} {box} {box}', 'nodalData =']
-    for i, u in enumerate(s):
-        neighbours = [j for j in (i - 1, i + 1) if 0 <= j < len(s)]
-        x, y = (u * length / b * c for c in direction)
-        lines.append(f'0,{i} {x:.12g} {y:.12g} 0 {len(neighbours)} {0 if abs(u) < 0.5 - 1e-9 else 7}')
-        for j in neighbours:
-            lines += [f'0,{j} {1 if j > i else -1} 0 0', '0 0 1']
-    with open(path, 'w') as f:
-        f.write('\n'.join(lines) + '\n')
-
-
-def operates(options, surroundings, character, length, max_segment, stress, constants):
+def operates(options, character, length, max_segment, stress, constants):
     mu, nu, b = constants
     side = 10 * length
     strain = b * 1.5 * length ** 2 / (math.sqrt(2) * side ** 3)
     settings = {
+        'Microstructure/Frank-Read sources':
+            f'1 1 1 / -1 0 1 / 0 0 0 / {length:.8g} / {90 if character == "edge" else 0}',
         'Domain/Size': f'{side:.6g} {side:.6g} {side:.6g}',
         'Loading/Stress': f'0 0 0 0 {stress:.8g} 0',
         'Discretisation/Minimum segment': f'{options.minimum_ratio * max_segment:.8g}',
@@ -73,14 +51,7 @@ def operates(options, surroundings, character, length, max_segment, stress, cons
         'Time stepping/Final plastic strain': f'{strain:.8g}',
         'Time stepping/Equilibrium speed': f'{5e-4 * stress * b / DRAG:.6g}',
     }
-    directory = f'{options.output}/{surroundings}_{character}_{length * 1e9:.0f}nm_{length / max_segment:.0f}_{stress / 1e6:.4f}MPa'
-    if surroundings == 'arms':
-        network = f'{os.path.abspath(options.output)}/arms_{character}_{length * 1e9:.0f}nm_{length / max_segment:.0f}.data'
-        write_line_with_arms(network, character, length, max_segment, b)
-        settings |= {'Microstructure/Frank-Read sources': '', 'Microstructure/Network file': network}
-    else:
-        settings['Microstructure/Frank-Read sources'] = \
-            f'1 1 1 / -1 0 1 / 0 0 0 / {length:.8g} / {90 if character == "edge" else 0}'
+    directory = f'{options.output}/{character}_{length * 1e9:.0f}nm_{length / max_segment:.0f}_{stress / 1e6:.4f}MPa'
     command = [options.program, 'run', f'{HERE}/input.prm', '-o', directory, '--threads', '1']
     for key, value in settings.items():
         command += ['--set', f'{key}={value}']
@@ -99,15 +70,15 @@ def operates(options, surroundings, character, length, max_segment, stress, cons
     raise RuntimeError(f'{directory}: neither operated nor at rest after {last["step"]} steps')
 
 
-def critical_stress(options, surroundings, character, length, pieces, constants, log=print):
+def critical_stress(options, character, length, pieces, constants, log=print):
     """Row of the table; @p pieces: length of the source over the maximum segment."""
     begin, trials = time.time(), 0
-    guess = estimate(surroundings, character, length, *constants)
-    low, high, factor = 0.0, math.inf, 1.03
+    guess = estimate(character, length, *constants)
+    low, high, factor = 0.0, math.inf, 1.02
     stress = guess
     while high / max(low, 1e-30) > 1 + options.tolerance:
         trials += 1
-        if operates(options, surroundings, character, length, length / pieces, stress, constants):
+        if operates(options, character, length, length / pieces, stress, constants):
             high = stress
         else:
             low = stress
@@ -119,9 +90,9 @@ def critical_stress(options, surroundings, character, length, pieces, constants,
             stress = math.sqrt(low * high)
         if trials > 30:
             raise RuntimeError(f'{character} {length}: no bracket')
-    row = [surroundings, character, length, length / pieces, low, high, math.sqrt(low * high), *constants, trials,
+    row = [character, length, length / pieces, low, high, math.sqrt(low * high), *constants, trials,
            round(time.time() - begin, 1)]
-    log(f'{surroundings:8s}  {character:5s}  L = {length * 1e9:6.0f} nm  L / L_max = {pieces:2d}  tau_c = {row[6] / 1e6:8.3f} MPa'
+    log(f'{character:5s}  L = {length * 1e9:6.0f} nm  L / L_max = {pieces:2d}  tau_c = {row[5] / 1e6:8.3f} MPa'
         f'  ({trials} trials, {row[-1]:.0f} s)', flush=True)
     return row
 
@@ -133,21 +104,21 @@ def main():
     parser.add_argument('--quick', action='store_true', help='two lengths, coarse lines, 2 %%')
     parser.add_argument('--jobs', type=int, default=2, help='sources at a time (default 2)')
     parser.add_argument('--tolerance', type=float, default=0.01, help='width of the final bracket (default 0.01)')
-    parser.add_argument('--case', nargs=4, metavar=('SURROUNDINGS', 'CHARACTER', 'LENGTH', 'PIECES'),
-                        help='one source only, for example: isolated edge 200e-9 12 (L / maximum segment)')
+    parser.add_argument('--case', nargs=3, metavar=('CHARACTER', 'LENGTH', 'PIECES'),
+                        help='one source only, for example: edge 200e-9 12 (L / maximum segment)')
     parser.add_argument('--minimum-ratio', type=float, default=0.3, help='minimum over maximum segment (default 0.3)')
     options = parser.parse_args()
     os.makedirs(options.output, exist_ok=True)
     os.environ['OMP_NUM_THREADS'] = '1'
     constants = medium(options.program)
     if options.case:
-        cases = [(*options.case[:2], float(options.case[2]), int(options.case[3]))]
+        cases = [(options.case[0], float(options.case[1]), int(options.case[2]))]
     elif options.quick:
         options.tolerance = max(options.tolerance, 0.02)
-        cases = [(k, c, length, 8) for k in KINDS for c in ('edge', 'screw') for length in (200e-9, 800e-9)]
+        cases = [(c, length, 8) for c in ('edge', 'screw') for length in (200e-9, 800e-9)]
     else:
-        cases = [(k, c, length, 12) for k in KINDS for c in ('edge', 'screw') for length in LENGTHS]
-        cases += [(k, c, 200e-9, pieces) for k in KINDS for c in ('edge', 'screw') for pieces in (6, 24)]  # convergence
+        cases = [(c, length, 12) for c in ('edge', 'screw') for length in LENGTHS]
+        cases += [(c, 200e-9, pieces) for c in ('edge', 'screw') for pieces in (6, 18)]  # convergence
     with ThreadPoolExecutor(options.jobs) as pool:
         rows = list(pool.map(lambda case: critical_stress(options, *case, constants), cases))
     path = f'{options.output}/critical_stress.csv'

@@ -311,6 +311,14 @@ TEST(Stress, SurfaceIsWrittenWholeAndInMetres)
   {
     EXPECT_NE(text.find(name), std::string::npos) << name;
   }
+  // Every face of a quadratic cell is four quadrilaterals: 4 x 2 (3x2 + 3x4 + 2x4), shared among the ranks.
+  std::ifstream own((directory / ("grain_000." + std::to_string(rank) + ".vtu")).string());
+  const std::string piece{std::istreambuf_iterator<char>(own), {}};
+  const auto at = piece.find("NumberOfCells=\"");
+  ASSERT_NE(at, std::string::npos);
+  int n_cells = std::stoi(piece.substr(at + 15));
+  MPI_Allreduce(MPI_IN_PLACE, &n_cells, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  EXPECT_EQ(n_cells, 208);
   EXPECT_THROW(problem.write_surface("/nowhere", "x", prescribe(problem, [](const Point &) { return Vector(); })),
                std::runtime_error);
   MPI_Barrier(MPI_COMM_WORLD);
