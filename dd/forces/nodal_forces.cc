@@ -109,7 +109,7 @@ std::vector<Vec3> segment_points(const Network &network)
   points.reserve(network.n_segments() * n_segment_points);
   for (const SegmentIndex s : network.segments())
     for (std::size_t q = 0; q < n_segment_points; ++q)
-      points.push_back(network.position(network.start(s)) + rule.points[q] * network.direction(s));
+      points.emplace_back(network.position(network.start(s)) + rule.points[q] * network.direction(s));
   return points;
 }
 

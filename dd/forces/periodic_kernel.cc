@@ -86,7 +86,7 @@ std::vector<Vec3> near_image_shifts(const Vec3 &lengths)
                  [&](int nx, int ny, int nz)
                  {
                    if (nx != 0 || ny != 0 || nz != 0)
-                     shifts.push_back(Vec3(nx, ny, nz).cwiseProduct(lengths));
+                     shifts.emplace_back(Vec3(nx, ny, nz).cwiseProduct(lengths));
                  });
   return shifts;
 }

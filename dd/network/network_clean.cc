@@ -22,7 +22,7 @@ template <class Index, class Position> Cube bounding_cube(std::span<const Index>
   Vec3 lower = position(range[0]), upper = lower;
   for (const Index i : range)
   {
-    const Vec3 x = position(i);
+    const Vec3 &x = position(i);
     lower = lower.cwiseMin(x);
     upper = upper.cwiseMax(x);
   }
