@@ -6,6 +6,9 @@ namespace ddfem
 {
 namespace
 {
+/// Normals closer than half a degree count as parallel: planes of one crystal are never that close.
+constexpr double parallel_sine = 1e-2;
+
 /// Orthonormal basis of the forbidden directions, grown one normal at a time.
 class ForbiddenDirections
 {
@@ -17,8 +20,7 @@ public:
     Vec3 r = normal;
     for (std::size_t k = 0; k < count; ++k)
       r -= r.dot(basis[k]) * basis[k];
-    // Normals closer than half a degree count as parallel: planes of one crystal are never that close.
-    if (r.norm() > 1e-2)
+    if (r.norm() > parallel_sine)
       basis[count++] = r.normalized();
   }
 
@@ -38,26 +40,36 @@ private:
 };
 } // namespace
 
-Mat3 glide_projector(const Network &network, const NodeIndex i, const GrainShape *shape)
+Mat3 glide_projector(const Network &network, std::span<const SegmentIndex> arms)
 {
-  if (network.constraint(i) == NodeConstraint::pinned)
-    return Mat3::Zero();
   ForbiddenDirections forbidden;
-  for (const SegmentIndex s : network.connected_segments(i))
+  for (const SegmentIndex s : arms)
   {
     if (!network.plane(s).is_valid())
       return Mat3::Zero();
     forbidden.add(network.normal(s));
   }
-  if (network.constraint(i) == NodeConstraint::surface && shape)
-    forbidden.add(shape->outward_normal(network.position(i)));
   return forbidden.projector();
 }
 
-double nodal_drag(const Network &network, const NodeIndex i, const LinearGlide &law)
+Mat3 glide_projector(const Network &network, const NodeIndex i, const GrainShape *shape)
+{
+  if (network.constraint(i) == NodeConstraint::pinned)
+    return Mat3::Zero();
+  const Mat3 in_planes = glide_projector(network, network.connected_segments(i));
+  if (network.constraint(i) != NodeConstraint::surface || !shape)
+    return in_planes;
+  // What the glide planes leave of the face's normal is forbidden as well.
+  const Vec3 normal = in_planes * shape->outward_normal(network.position(i));
+  if (normal.norm() < parallel_sine)
+    return in_planes;
+  return in_planes - normal * normal.transpose() / normal.squaredNorm();
+}
+
+double drag_of_arms(const Network &network, std::span<const SegmentIndex> arms, const LinearGlide &law)
 {
   double drag = 0;
-  for (const SegmentIndex s : network.connected_segments(i))
+  for (const SegmentIndex s : arms)
   {
     const Vec3 t = network.direction(s);
     const double length = t.norm();
@@ -65,6 +77,11 @@ double nodal_drag(const Network &network, const NodeIndex i, const LinearGlide &
     drag += 0.5 * length * (law.drag_edge + (law.drag_screw - law.drag_edge) * cosine * cosine);
   }
   return drag;
+}
+
+double nodal_drag(const Network &network, const NodeIndex i, const LinearGlide &law)
+{
+  return drag_of_arms(network, network.connected_segments(i), law);
 }
 
 std::vector<Vec3> glide_velocities(const Network &network, const std::vector<Vec3> &force, const LinearGlide &law,

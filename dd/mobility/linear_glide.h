@@ -4,6 +4,7 @@
 #include "dd/geometry/grain_shape.h"
 #include "dd/network/network.h"
 
+#include <span>
 #include <vector>
 
 namespace ddfem
@@ -20,7 +21,13 @@ struct LinearGlide
 /// planes of the arms (and the surface, for surface nodes) leave none. An arm without a glide plane is sessile.
 Mat3 glide_projector(const Network &network, NodeIndex i, const GrainShape *shape);
 
-/// Drag of a node, MPa ns nm: half of B(theta) L of each arm.
+/// The same for a free node with these arms only.
+Mat3 glide_projector(const Network &network, std::span<const SegmentIndex> arms);
+
+/// Drag of a free node with these arms, MPa ns nm: half of B(theta) L of each.
+double drag_of_arms(const Network &network, std::span<const SegmentIndex> arms, const LinearGlide &law);
+
+/// Drag of a node, MPa ns nm.
 double nodal_drag(const Network &network, NodeIndex i, const LinearGlide &law);
 
 /// Local nodal velocities v = P f / (sum over arms of B(theta) L / 2), nm/ns, indexed by NodeIndex::value.

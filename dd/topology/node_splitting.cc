@@ -27,26 +27,6 @@ struct Part
   Vec3 velocity(const Vec3 &extra_force) const { return projector * (force + extra_force) / drag; }
 };
 
-/// Projector on the directions common to the glide planes of @p arms.
-Mat3 common_directions(const Network &n, const std::vector<SegmentIndex> &arms)
-{
-  std::vector<Vec3> basis;
-  for (const SegmentIndex s : arms)
-  {
-    if (!n.plane(s).is_valid())
-      return Mat3::Zero();
-    Vec3 r = n.normal(s);
-    for (const Vec3 &e : basis)
-      r -= r.dot(e) * e;
-    if (r.norm() > 1e-2)
-      basis.push_back(r.normalized());
-  }
-  Mat3 p = Mat3::Identity();
-  for (const Vec3 &e : basis)
-    p -= e * e.transpose();
-  return basis.size() >= 3 ? Mat3(Mat3::Zero()) : p;
-}
-
 Part make_part(const Network &n, const NodeIndex i, std::vector<SegmentIndex> arms, const NodalForces &forces,
                const LinearGlide &law)
 {
@@ -58,12 +38,12 @@ Part make_part(const Network &n, const NodeIndex i, std::vector<SegmentIndex> ar
     part.force += n.start(s) == i ? f.start : f.end;
     part.burgers += n.burgers_from(s, i);
     const Vec3 t = n.direction(s);
-    const double length = t.norm(), cosine = t.dot(n.burgers(s)) / (length * n.burgers(s).norm());
-    part.drag += 0.5 * length * (law.drag_edge + (law.drag_screw - law.drag_edge) * cosine * cosine);
+    const double length = t.norm();
     part.shortest = std::min(part.shortest, length);
     part.arm_sum += (n.start(s) == i ? 1.0 : -1.0) / length * t;
   }
-  part.projector = common_directions(n, arms);
+  part.drag = drag_of_arms(n, arms, law);
+  part.projector = glide_projector(n, arms);
   part.arms = std::move(arms);
   return part;
 }

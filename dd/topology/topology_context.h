@@ -43,7 +43,8 @@ struct TopologyContext
   /// Displacement of each node in this step, nm, by NodeIndex::value; zero once an event has stopped the node.
   std::vector<Vec3> remaining;
 
-  NodeIndex insert_node(const Node &node, const Vec3 &displacement)
+  /// @p displacement is taken by value: it may be an entry of `remaining`, which grows here.
+  NodeIndex insert_node(const Node &node, const Vec3 displacement)
   {
     const NodeIndex i = network.insert(node);
     if (remaining.size() <= i.value)
