@@ -119,7 +119,7 @@ private:
   Vec3 bracketed_vector(const std::string &name)
   {
     expect("[", name);
-    const Vec3 value = vector(name);
+    Vec3 value = vector(name);
     expect("]", name);
     return value;
   }

@@ -64,7 +64,7 @@ Vec3 glide_normal(const Arm &arm, const Arm &back, const Warn &warn)
 {
   if (arm.normal.norm() < normal_tolerance || back.normal.norm() < normal_tolerance)
     return Vec3::Zero();
-  const Vec3 n = arm.normal.normalized();
+  Vec3 n = arm.normal.normalized();
   if (n.cross(back.normal.normalized()).norm() > normal_tolerance)
   {
     warn(back.line, "the glide-plane normal is " + text_of(back.normal) + " here, " + text_of(arm.normal) +

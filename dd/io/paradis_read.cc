@@ -107,7 +107,7 @@ void Builder::place_nodes()
   data_.lower = options_.burgers_magnitude * file_.lower;
   data_.upper = options_.burgers_magnitude * file_.upper;
   for (const FileNode &node : file_.nodes)
-    position_.push_back(options_.burgers_magnitude * node.position);
+    position_.emplace_back(options_.burgers_magnitude * node.position);
   if (options_.periodic)
   {
     data_.network.set_period(data_.upper - data_.lower);
