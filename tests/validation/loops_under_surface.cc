@@ -96,37 +96,37 @@ int main(int argc, char **argv)
   std::vector<double> sizes;
   for (int k = 1; k < argc; ++k)
     sizes.push_back(std::atof(argv[k])); // element sizes of a convergence study
-  return run(argc, argv,
-             [&](Report &report)
-             {
-               std::ifstream in(DDFEM_TEST_DATA "/halfspace_loops.json");
-               const auto reference = nlohmann::json::parse(in);
-               const auto study = [&](const double h, const double depth, const std::vector<std::size_t> &cases)
-               {
-                 const auto mesh = graded_box(h);
-                 double worst = 0;
-                 for (const std::size_t k : cases)
-                 {
-                   const double error = case_error(reference["cases"][k], *mesh, depth);
-                   char row[120];
-                   std::snprintf(row, sizeof row,
-                                 "element size %5.3f, points deeper than %4.2f, loop %zu: largest error %8.4f %%", h,
-                                 depth, k, 100 * error);
-                   report.note(row);
-                   worst = std::max(worst, error);
-                 }
-                 return worst;
-               };
-               const std::vector<std::size_t> all{0, 1, 2, 3, 4, 5, 6, 7};
-               for (const double h : sizes)
-                 study(h, 2.0, all);
-               if (!sizes.empty())
-                 return;
-               report.below("deeper than two elements, element size 1: error of the correction", study(1.0, 2.0, all),
-                            0.05);
-               // The loops that are hardest at element size 1, at the same points.
-               const std::vector<std::size_t> hardest{3, 5};
-               const double coarse = study(1.5, 2.0, hardest), fine = study(1.0, 2.0, hardest);
-               report.below("error at element size 1 over error at 1.5 (second order would give 0.44)", fine / coarse, 0.6);
-             });
+  return run(
+      argc, argv,
+      [&](Report &report)
+      {
+        std::ifstream in(DDFEM_TEST_DATA "/halfspace_loops.json");
+        const auto reference = nlohmann::json::parse(in);
+        const auto study = [&](const double h, const double depth, const std::vector<std::size_t> &cases)
+        {
+          const auto mesh = graded_box(h);
+          double worst = 0;
+          for (const std::size_t k : cases)
+          {
+            const double error = case_error(reference["cases"][k], *mesh, depth);
+            char row[120];
+            std::snprintf(row, sizeof row,
+                          "element size %5.3f, points deeper than %4.2f, loop %zu: largest error %8.4f %%", h, depth, k,
+                          100 * error);
+            report.note(row);
+            worst = std::max(worst, error);
+          }
+          return worst;
+        };
+        const std::vector<std::size_t> all{0, 1, 2, 3, 4, 5, 6, 7};
+        for (const double h : sizes)
+          study(h, 2.0, all);
+        if (!sizes.empty())
+          return;
+        report.below("deeper than two elements, element size 1: error of the correction", study(1.0, 2.0, all), 0.05);
+        // The loops that are hardest at element size 1, at the same points.
+        const std::vector<std::size_t> hardest{3, 5};
+        const double coarse = study(1.5, 2.0, hardest), fine = study(1.0, 2.0, hardest);
+        report.below("error at element size 1 over error at 1.5 (second order would give 0.44)", fine / coarse, 0.6);
+      });
 }
