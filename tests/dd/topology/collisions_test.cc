@@ -205,5 +205,29 @@ TEST(Surface, LineThatReachesAFreeFaceIsCutAndContinuesAsTwoRays)
   }
   f.network.check_invariants();
 }
+
+TEST(Surface, EndsOfTwoLinesMeetOnlyToAnnihilate)
+{
+  const BoxShape box(Vec3::Zero(), Vec3(100, 100, 100));
+  for (const bool opposite : {false, true})
+  {
+    TopologyFixture f;
+    f.shape = &box;
+    const Vec3 other = opposite ? Vec3(-b) : Vec3(0.125, 0.2, 0);
+    std::vector<NodeIndex> ends;
+    for (const auto &[y, burgers] : {std::pair(50.0, b), std::pair(51.0, other)})
+    {
+      ends.push_back(f.network.insert(Node{Vec3(100, y, 50), NodeConstraint::surface}));
+      const NodeIndex inner = f.network.insert(Node{Vec3(60, 2 * y - 50.5, 50), NodeConstraint::pinned});
+      f.network.insert(Segment{ends.back(), inner, burgers, f.horizontal(50)});
+    }
+    auto c = f.context();
+    c.remaining[ends[0].value] = Vec3(0, 0.5, 0);
+    collide(c);
+    EXPECT_EQ(f.counts.collisions, opposite ? 1U : 0U);
+    EXPECT_EQ(virtual_rays(f.network, box, RayDirection::normal).size(), opposite ? 0U : 2U);
+    f.network.check_invariants();
+  }
+}
 } // namespace
 } // namespace ddfem
