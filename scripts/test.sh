@@ -24,6 +24,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$root"
 
 test_log=build/tests.log
+tidy_log=build/tidy.log
 
 # list_files PATTERN...: the files of the repository that match, each followed by a zero byte; without git (an
 # unpacked archive) those of the folder.
@@ -90,7 +91,7 @@ run_tidy()
   list_files "${patterns[@]}" | xargs -0 -r -n 1 -P "$n_cores" \
     clang-tidy -p build/ci --quiet --warnings-as-errors='*' --extra-arg=-Wno-error \
     --extra-arg=-Wno-unknown-warning-option --extra-arg=-idirafter --extra-arg="$(g++ -print-file-name=include)" 2>&1 |
-    { grep -vE '^[0-9]+ warnings? generated\.$' || true; }
+    { grep -vE '^[0-9]+ warnings? generated\.$' || true; } | tee "$tidy_log"
 }
 
 run_tests()
@@ -99,7 +100,7 @@ run_tests()
 }
 
 mkdir -p build
-rm -f "$test_log"
+rm -f "$test_log" "$tidy_log"
 
 required_stage packages scripts/install_packages.sh
 stage formatting check_format
@@ -112,6 +113,10 @@ if [[ $tidy != none ]]; then
 fi
 stage tests run_tests
 
+# What was found long ago is out of sight: say it again.
+if [[ -s $tidy_log ]]; then
+  grep -E '(error|warning): ' "$tidy_log" | sort -u
+fi
 print_stages
 grep -E '^[0-9]+% tests passed' "$test_log" | tail -n 1 || echo "no tests were run"
 (( ${#failed_stages[@]} == 0 ))

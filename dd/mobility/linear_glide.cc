@@ -56,7 +56,7 @@ Mat3 glide_projector(const Network &network, const NodeIndex i, const GrainShape
 {
   if (network.constraint(i) == NodeConstraint::pinned)
     return Mat3::Zero();
-  const Mat3 in_planes = glide_projector(network, network.connected_segments(i));
+  Mat3 in_planes = glide_projector(network, network.connected_segments(i));
   if (network.constraint(i) != NodeConstraint::surface || !shape)
     return in_planes;
   // What the glide planes leave of the face's normal is forbidden as well.

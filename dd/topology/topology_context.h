@@ -43,13 +43,14 @@ struct TopologyContext
   /// Displacement of each node in this step, nm, by NodeIndex::value; zero once an event has stopped the node.
   std::vector<Vec3> remaining;
 
-  /// @p displacement is taken by value: it may be an entry of `remaining`, which grows here.
-  NodeIndex insert_node(const Node &node, const Vec3 displacement)
+  /// @p displacement may be an entry of `remaining`.
+  NodeIndex insert_node(const Node &node, const Vec3 &displacement)
   {
+    const Vec3 kept = displacement; // `remaining` may move in memory below
     const NodeIndex i = network.insert(node);
     if (remaining.size() <= i.value)
       remaining.resize(i.value + 1, Vec3::Zero());
-    remaining[i.value] = displacement;
+    remaining[i.value] = kept;
     return i;
   }
 };
