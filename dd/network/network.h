@@ -187,6 +187,8 @@ public:
   /// a function of the content alone: inserting the same objects in another order and calling clean() gives the same
   /// arrays. Planes keep their indices.
   void clean();
+  /// How often clean() has renumbered the objects: indices kept elsewhere are stale when this has changed.
+  std::size_t n_cleans() const { return n_cleans_; }
 
   // --- checks
   /// All violated invariants (empty if sound): Burgers vectors balance at free nodes; no duplicate or zero-length
@@ -232,6 +234,7 @@ private:
   LiveIndices<SegmentIndex> live_segments_;
   ObjectId next_node_id_ = 0;
   ObjectId next_segment_id_ = 0;
+  std::size_t n_cleans_ = 0;
 
   GlidePlanes planes_;
   Vec3 period_ = Vec3::Zero();

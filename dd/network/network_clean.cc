@@ -118,5 +118,6 @@ void Network::clean()
 {
   clean_nodes();
   clean_segments();
+  ++n_cleans_;
 }
 } // namespace ddfem
