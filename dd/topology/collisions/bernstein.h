@@ -1,0 +1,140 @@
+// Polynomials of one variable in the Bernstein basis of an interval, and where they fall through zero.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace ddfem
+{
+constexpr double binomial(const std::size_t n, const std::size_t k)
+{
+  double b = 1;
+  for (std::size_t i = 0; i < k; ++i)
+    b = b * static_cast<double>(n - i) / static_cast<double>(i + 1);
+  return b;
+}
+
+/// Coefficients of the product of two polynomials, each given by its Bernstein coefficients (degree + 1 of them) on the same
+/// interval. @p multiply forms the product of two coefficients: of numbers, or a dot or cross product of vectors.
+/// (Farin, Curves and Surfaces for CAGD, ch. 6: c_k = sum_{i+j=k} C(m,i) C(n,j) / C(m+n,k) p_i q_j.)
+template <class A, std::size_t m, class B, std::size_t n, class Multiply>
+auto bernstein_product(const std::array<A, m> &p, const std::array<B, n> &q, const Multiply &multiply)
+{
+  using Value = decltype(multiply(p[0], q[0]));
+  std::array<Value, m + n - 1> product;
+  for (std::size_t k = 0; k < m + n - 1; ++k)
+  {
+    const std::size_t first = k < n ? 0 : k - n + 1, last = std::min(k, m - 1);
+    const auto weight = [&](const std::size_t i)
+    { return binomial(m - 1, i) * binomial(n - 1, k - i) / binomial(m + n - 2, k); };
+    product[k] = weight(first) * multiply(p[first], q[k - first]);
+    for (std::size_t i = first + 1; i <= last; ++i)
+      product[k] += weight(i) * multiply(p[i], q[k - i]);
+  }
+  return product;
+}
+
+/// Number of changes of sign in a sequence, zero counting as negative. For Bernstein coefficients it bounds the number of
+/// roots inside the interval and differs from it by an even number (Descartes): none for 0, one for 1.
+template <std::size_t n> unsigned sign_variations(const std::array<double, n> &coefficients)
+{
+  unsigned variations = 0;
+  for (std::size_t i = 1; i < n; ++i)
+    variations += (coefficients[i] > 0) != (coefficients[i - 1] > 0) ? 1U : 0U;
+  return variations;
+}
+
+/// Where @p f falls through zero, for f(a) > 0 >= f(b), a < b: a point x with f(x) <= 0 no more than @p tolerance behind
+/// one where f > 0. Interpolation with the worst case of bisection (ITP: Oliveira and Takahashi, ACM Trans. Math. Softw.
+/// 47, 5, 2020).
+template <class Function> double falling_root(const Function &f, double a, double b, const double tolerance)
+{
+  double fa = f(a), fb = f(b);
+  const double half = 0.5 * tolerance, k1 = 0.2 / (b - a);
+  double reach = half * std::exp2(std::max(0.0, std::ceil(std::log2((b - a) / tolerance))) + 1);
+  while (b - a > tolerance)
+  {
+    const double middle = 0.5 * (a + b), radius = reach - 0.5 * (b - a);
+    const double secant = std::clamp((fb * a - fa * b) / (fb - fa), a, b);
+    const double side = middle >= secant ? 1.0 : -1.0, shift = k1 * (b - a) * (b - a);
+    const double truncated = shift <= std::abs(middle - secant) ? secant + side * shift : middle;
+    const double x = std::abs(truncated - middle) <= radius ? truncated : middle - side * radius;
+    if (x <= a || x >= b)
+      break;
+    const double fx = f(x);
+    (fx > 0 ? a : b) = x;
+    (fx > 0 ? fa : fb) = fx;
+    reach *= 0.5;
+  }
+  return b;
+}
+
+/// Visits the points in [a, b] where a polynomial falls from above to zero, in increasing order, until @p accept returns
+/// true, and returns whether it did. Intervals are halved until their coefficients have at most one change of sign; those
+/// shorter than @p resolution that still have more are visited once (a minimum that touches zero, say).
+///
+/// @p polynomial has coefficients(a, b), its Bernstein coefficients on any interval, formed afresh from what it is made of
+/// so that they are as accurate as the interval is small; value(t); and covered(a, b), whether the interval need not be
+/// looked at. Roots are found to @p tolerance.
+template <class Polynomial, class Accept>
+bool visit_falling_roots(const Polynomial &polynomial, const double a, const double b, const double resolution,
+                         const double tolerance, const Accept &accept)
+{
+  const auto coefficients = polynomial.coefficients(a, b);
+  const unsigned variations = sign_variations(coefficients);
+  if (variations == 0 || polynomial.covered(a, b))
+    return false;
+  if (variations == 1)
+    return coefficients.front() > 0 &&
+           accept(falling_root([&](const double t) { return polynomial.value(t); }, a, b, tolerance));
+  const double middle = 0.5 * (a + b);
+  if (b - a < resolution || middle <= a || middle >= b)
+    return accept(middle);
+  return visit_falling_roots(polynomial, a, middle, resolution, tolerance, accept) ||
+         visit_falling_roots(polynomial, middle, b, resolution, tolerance, accept);
+}
+
+/// The first local minimum of @p f at or after @p a, to @p tolerance; @p b if f falls all the way to b. The search walks in
+/// steps of @p step until f no longer falls, and then by golden section; of equal values the first counts. Minima that are
+/// followed by a deeper one within a step may be passed over.
+template <class Function>
+double first_local_minimum(const Function &f, const double a, const double b, const double step, const double tolerance)
+{
+  double left = a, middle = a, right = std::min(a + step, b);
+  double f_middle = f(a), f_right = f(right);
+  while (f_right < f_middle && right < b)
+  {
+    left = middle;
+    middle = right;
+    f_middle = f_right;
+    right = std::min(right + step, b);
+    f_right = f(right);
+  }
+  const double f_end = f_right, end = right;
+  constexpr double golden = 0.6180339887498949;
+  double x1 = right - golden * (right - left), x2 = left + golden * (right - left), f1 = f(x1), f2 = f(x2);
+  while (right - left > tolerance)
+    if (f1 <= f2)
+    {
+      right = x2;
+      x2 = x1;
+      f2 = f1;
+      x1 = right - golden * (right - left);
+      f1 = f(x1);
+    }
+    else
+    {
+      left = x1;
+      x1 = x2;
+      f1 = f2;
+      x2 = left + golden * (right - left);
+      f2 = f(x2);
+    }
+  const double best = std::min(f1, f2);
+  if (f(a) <= best && right - a <= 2 * tolerance)
+    return a;
+  return f_end < best ? end : 0.5 * (left + right);
+}
+} // namespace ddfem
