@@ -60,7 +60,9 @@ template <class Function> double falling_root(const Function &f, double a, doubl
     const double secant = std::clamp((fb * a - fa * b) / (fb - fa), a, b);
     const double side = middle >= secant ? 1.0 : -1.0, shift = k1 * (b - a) * (b - a);
     const double truncated = shift <= std::abs(middle - secant) ? secant + side * shift : middle;
-    const double x = std::abs(truncated - middle) <= radius ? truncated : middle - side * radius;
+    double x = std::abs(truncated - middle) <= radius ? truncated : middle - side * radius;
+    if (x <= a || x >= b)
+      x = middle; // the interpolation hits the end to rounding
     if (x <= a || x >= b)
       break;
     const double fx = f(x);
@@ -103,10 +105,11 @@ template <class Function>
 double first_local_minimum(const Function &f, const double a, const double b, const double step, const double tolerance)
 {
   double left = a, middle = a, right = std::min(a + step, b);
-  double f_middle = f(a), f_right = f(right);
+  double f_left = f(a), f_middle = f_left, f_right = f(right);
   while (f_right < f_middle && right < b)
   {
     left = middle;
+    f_left = f_middle;
     middle = right;
     f_middle = f_right;
     right = std::min(right + step, b);
@@ -116,7 +119,7 @@ double first_local_minimum(const Function &f, const double a, const double b, co
   constexpr double golden = 0.6180339887498949;
   double x1 = right - golden * (right - left), x2 = left + golden * (right - left), f1 = f(x1), f2 = f(x2);
   while (right - left > tolerance)
-    if (f1 <= f2)
+    if (f1 <= f2 || f1 >= f_left)
     {
       right = x2;
       x2 = x1;
@@ -127,6 +130,7 @@ double first_local_minimum(const Function &f, const double a, const double b, co
     else
     {
       left = x1;
+      f_left = f1;
       x1 = x2;
       f1 = f2;
       x2 = left + golden * (right - left);
@@ -135,6 +139,6 @@ double first_local_minimum(const Function &f, const double a, const double b, co
   const double best = std::min(f1, f2);
   if (f(a) <= best && right - a <= 2 * tolerance)
     return a;
-  return f_end < best ? end : 0.5 * (left + right);
+  return right == end && f_end < best ? end : 0.5 * (left + right);
 }
 } // namespace ddfem

@@ -14,19 +14,23 @@ namespace ddfem::contact_oracle
 using Real = long double;
 using Point = Eigen::Matrix<Real, 3, 1>;
 
-/// The shortest vector between two segments p, p + u and q, q + v (Ericson, Real-Time Collision Detection, 5.1.9).
+/// The shortest vector between two segments p, p + u and q, q + v (Ericson, Real-Time Collision Detection, 5.1.9). For the
+/// nearly parallel, whose stationary point is rounding, from the ends of the first segment also.
 inline Point separation(const Point &p, const Point &u, const Point &q, const Point &v)
 {
   const Point w = p - q;
   const Real uu = u.squaredNorm(), vv = v.squaredNorm(), vw = v.dot(w), uw = u.dot(w), uv = u.dot(v);
   const auto ratio = [](const Real a, const Real b) { return b > 0 ? std::clamp<Real>(a / b, 0, 1) : Real(0); };
-  Real s = ratio(uv * vw - uw * vv, uu * vv - uv * uv), t = vv > 0 ? (uv * s + vw) / vv : Real(0);
-  if (t < 0 || t > 1 || vv == 0)
+  const auto from = [&](const Real s_of_line)
   {
-    t = std::clamp<Real>(t, 0, 1);
-    s = ratio(uv * t - uw, uu);
-  }
-  return q + t * v - p - s * u;
+    const Real t = ratio(uv * s_of_line + vw, vv), s = ratio(uv * t - uw, uu);
+    return Point(q + t * v - p - s * u);
+  };
+  Point shortest = from(ratio(uv * vw - uw * vv, uu * vv - uv * uv));
+  for (const Point &x : {from(0), from(1)})
+    if (x.squaredNorm() < shortest.squaredNorm())
+      shortest = x;
+  return shortest;
 }
 
 /// The four ends of a pair at a time: start and end of a, start and end of b, seen from the start of a.
@@ -83,26 +87,26 @@ inline Real first_within(const MovingSegment &a, const MovingSegment &b, const R
   return found < 0 && distance(a, b, t1) <= level ? t1 : found;
 }
 
-/// Smallest distance in [t0, t1], to 1e-9 of itself or 1e-9 @p scale: the first search that finds nothing bounds it.
+/// Smallest distance in [t0, t1], to 1e-4 of itself; zero if it is below @p least.
 inline Real smallest_distance(const MovingSegment &a, const MovingSegment &b, const Real t0, const Real t1,
-                              const Real scale)
+                              const Real least)
 {
   Real best = std::min(distance(a, b, t0), distance(a, b, t1));
   const std::function<void(Real, Real)> search = [&](const Real left, const Real right)
   {
-    const Point x = Ends(a, b, (left + right) / 2).separation();
+    const Real middle = (left + right) / 2;
+    const Point x = Ends(a, b, middle).separation();
     const Real d = x.norm();
     best = std::min(best, d);
-    if (d > 0 &&
-        std::min(Ends(a, b, left).apart(x / d), Ends(a, b, right).apart(x / d)) > best * (1 - 1e-6L) - 1e-9L * scale)
+    if (best < least)
       return;
-    if (right - left < 1e-12L)
+    if (std::min(Ends(a, b, left).apart(x / d), Ends(a, b, right).apart(x / d)) > best * (1 - 1e-4L))
       return;
-    search(left, (left + right) / 2);
-    search((left + right) / 2, right);
+    search(left, middle);
+    search(middle, right);
   };
   search(t0, t1);
-  return best;
+  return best < least ? 0 : best;
 }
 
 /// Random pairs. Lengths are about 40, displacements 0.01 to 80, and the pairs come within a few units: the radius is about 1.
