@@ -2,7 +2,11 @@
 #pragma once
 
 #include "dd/network/network.h"
+#include "dd/topology/collisions/skin_tuner.h"
+#include "dd/topology/collisions/sphere_grid.h"
+#include "dd/topology/collisions/sphere_table.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -57,7 +61,46 @@ public:
   const CandidateStatistics &statistics() const { return statistics_; }
 
 private:
+  /// Where a node was when its segments got their spheres, and how far from there it may go.
+  struct Reference
+  {
+    Vec3 position = Vec3::Zero(); ///< nm
+    double allowance = 0;         ///< nm: half the skin, more for the few nodes that move faster than the others
+  };
+
+  bool is_outdated(const Network &network, double radius) const;
+  void rebuild(const Network &network, std::span<const Vec3> displacement, double radius, bool expired);
+  void set_reference(const Network &network, NodeIndex i, std::span<const Vec3> displacement);
+  std::vector<NodeIndex> nodes_out_of_reach(const Network &network, std::span<const Vec3> displacement) const;
+  std::array<Sphere, 2> spheres_of(const Network &network, SegmentIndex s) const;
+  std::vector<SegmentIndex> fill_grid(const Network &network);
+  void find_pairs_of_grid(const Network &network);
+  std::vector<CandidatePair> pairs_of_inserted(const Network &network, SegmentIndex s, std::uint32_t first,
+                                               std::size_t &tests) const;
+  void insert(const Network &network, const std::vector<SegmentIndex> &segments);
+  /// Whether a sphere entered with this number is the present one of its segment.
+  bool is_current(const Network &network, SegmentIndex s, std::uint32_t number) const
+  {
+    return network.contains(s) && number_[s.value] == number;
+  }
+
   std::vector<CandidatePair> pairs_;
   CandidateStatistics statistics_;
+  SkinTuner tuner_;
+
+  std::vector<Reference> references_; ///< by NodeIndex::value
+  SphereGrid grid_;                   ///< segments present at the build
+  SphereTable inserted_;              ///< those entered since, with their number
+  SphereTable in_step_;               ///< those born within the step
+  /// By SegmentIndex::value: 0 for those in the grid, running number of its latest entry for those in the table.
+  std::vector<std::uint32_t> number_;
+  std::uint32_t n_entered_ = 0;
+
+  CellMap map_;
+  Vec3 period_ = Vec3::Zero();
+  double radius_ = -1;             ///< for which the pairs were searched, nm
+  std::size_t n_cleans_ = 0;       ///< of the network, at the build
+  std::size_t n_live_ = 0;         ///< segments of the network, at the last update
+  std::size_t steps_of_build_ = 0; ///< that the present list has served
 };
 } // namespace ddfem

@@ -1,0 +1,121 @@
+// The cells of a uniform grid in free space or a periodic cell.
+#pragma once
+
+#include "dd/common/types.h"
+#include "dd/network/morton.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace ddfem
+{
+/// Which cell of a uniform grid a point lies in. Along a periodic axis the cells divide the period and are counted from
+/// the origin of the sample frame; along a free axis they start at the lowest point, and points outside the grid count as
+/// in its outermost cell (such a projection never takes two points farther apart: neighbours stay neighbours).
+class CellMap
+{
+public:
+  using Cell = std::array<std::uint32_t, 3>;
+
+  CellMap() = default;
+  /// Cells at least @p width (nm) wide around points in the box [lower, upper]; wider where the Morton index could not
+  /// number them, narrower where the period is less. @p period is zero along free axes.
+  CellMap(const Vec3 &lower, const Vec3 &upper, const Vec3 &period, double width);
+
+  /// The image of @p x in the cell [0, period].
+  Vec3 wrapped(const Vec3 &x) const
+  {
+    Vec3 y = x;
+    for (int d = 0; d < 3; ++d)
+      if (periodic_[d] && !(y[d] >= 0 && y[d] <= period_[d]))
+        y[d] -= period_[d] * std::floor(y[d] / period_[d]);
+    return y;
+  }
+
+  /// Cell of a wrapped point.
+  Cell cell(const Vec3 &x) const
+  {
+    Cell c{};
+    for (int d = 0; d < 3; ++d)
+      c[d] = static_cast<std::uint32_t>(std::clamp((x[d] - origin_[d]) * per_width_[d], 0.0, n_[d] - 1.0));
+    return c;
+  }
+
+  std::uint64_t key(const Vec3 &x) const
+  {
+    const Cell c = cell(x);
+    return morton_index(c[0], c[1], c[2]);
+  }
+
+  /// Squared distance of the nearest images of two wrapped points, nm^2.
+  double squared_distance(double dx, double dy, double dz) const
+  {
+    const double x = nearest(dx, 0), y = nearest(dy, 1), z = nearest(dz, 2);
+    return x * x + y * y + z * z;
+  }
+
+  /// f(key) for every cell that has a corner in common with @p c, itself included, each once.
+  template <class F> void for_each_neighbour(const Cell &c, F &&f) const
+  {
+    std::array<std::array<std::uint64_t, 3>, 3> bits{};
+    std::array<int, 3> count{};
+    for (int d = 0; d < 3; ++d)
+      count[d] = with_neighbours(d, c[d], bits[d]);
+    for (int i = 0; i < count[0]; ++i)
+      for (int j = 0; j < count[1]; ++j)
+        for (int k = 0; k < count[2]; ++k)
+          f(bits[0][i] | bits[1][j] | bits[2][k]);
+  }
+
+  /// Cells that a cube about a point touches: coordinate (first + k) mod n for k < count along each axis.
+  struct Range
+  {
+    std::array<std::uint32_t, 3> first{}, count{};
+    double n_cells() const { return 1.0 * count[0] * count[1] * count[2]; }
+  };
+  /// Those of the cube of half width @p reach (nm) about the wrapped point @p x.
+  Range around(const Vec3 &x, double reach) const;
+
+  template <class F> void for_each_key(const Range &range, F &&f) const
+  {
+    for (std::uint32_t i = 0; i < range.count[0]; ++i)
+      for (std::uint32_t j = 0; j < range.count[1]; ++j)
+        for (std::uint32_t k = 0; k < range.count[2]; ++k)
+          f(morton_index((range.first[0] + i) % n_[0], (range.first[1] + j) % n_[1], (range.first[2] + k) % n_[2]));
+  }
+
+  /// One more than the highest bit that a Morton index of these cells can have.
+  unsigned key_bits() const;
+
+private:
+  /// Bits that coordinate @p c along @p axis and those of the cells on both sides, each once, have in the Morton index;
+  /// returns how many.
+  int with_neighbours(int axis, std::uint32_t c, std::array<std::uint64_t, 3> &found) const
+  {
+    const std::uint32_t last = n_[axis] - 1;
+    const bool closed = periodic_[axis] && last > 1; // with two cells the neighbours on both sides are one
+    const auto bits = [axis](std::uint32_t k) { return spread_bits(k) << axis; };
+    int count = 0;
+    found[count++] = bits(c);
+    if (c < last || closed)
+      found[count++] = bits(c < last ? c + 1 : 0);
+    if (c > 0 || closed)
+      found[count++] = bits(c > 0 ? c - 1 : last);
+    return count;
+  }
+
+  /// Distance along an axis of two wrapped coordinates that differ by @p d; the period is infinite along free axes.
+  double nearest(double d, int axis) const
+  {
+    const double a = std::abs(d);
+    return std::min(a, period_[axis] - a);
+  }
+
+  Vec3 origin_ = Vec3::Zero(), period_ = Vec3::Constant(INFINITY), per_width_ = Vec3::Zero();
+  std::array<bool, 3> periodic_{};
+  std::array<std::uint32_t, 3> n_{1, 1, 1};
+};
+} // namespace ddfem
