@@ -178,7 +178,15 @@ void add_discretisation(std::vector<ParameterEntry> &t)
       {s, "Maximum segment", "30e-9", positive(), "m", "L_max: longer segments are halved; at least twice L_min."});
   t.push_back({s, "Minimum area", "0", not_negative(), "m^2",
                "A node whose triangle with its neighbours is smaller is removed; 0: 0.01 L_min^2."});
+  t.push_back(
+      {s, "Maximum area", "0", not_negative(), "m^2",
+       "Where the triangle of a node with its neighbours is larger the line is sharply bent, and segments longer "
+       "than three minimum ones are halved; 0: 0.2 L_max^2."});
   t.push_back({s, "Collision radius", "0", not_negative(), "m", "Capture distance of collisions; 0: L_min / 8."});
+  t.push_back(
+      {s, "Collision algorithm", "continuous", one_of("continuous|proximity"), "",
+       "Continuous: contacts over the whole step, in the order of time. Proximity: by distance, in sub-steps as "
+       "short as the capture distance demands; slow, for comparison."});
 }
 
 void add_numerics(std::vector<ParameterEntry> &t)

@@ -241,6 +241,10 @@ void read_discretisation(const InputDeck &deck, Parameters &p)
   t.collision_radius = number_or(deck, "Discretisation/Collision radius", units::metre, t.min_segment / 8);
   t.min_area =
       number_or(deck, "Discretisation/Minimum area", units::metre * units::metre, 0.01 * t.min_segment * t.min_segment);
+  t.max_area =
+      number_or(deck, "Discretisation/Maximum area", units::metre * units::metre, 0.2 * t.max_segment * t.max_segment);
+  t.collisions = deck.text("Discretisation/Collision algorithm") == "continuous" ? CollisionAlgorithm::continuous
+                                                                                 : CollisionAlgorithm::proximity;
   if (t.max_segment < 2 * t.min_segment)
     deck.reject("Discretisation/Maximum segment", "must be at least twice the minimum segment");
   if (t.min_segment < 2 * p.medium.a)

@@ -2,10 +2,9 @@
 
 #include "coupling/input_error.h"
 #include "dd/mobility/linear_glide.h"
+#include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/growth.h"
-#include "dd/topology/motion.h"
 #include "dd/topology/node_splitting.h"
-#include "dd/topology/proximity_collisions.h"
 #include "dd/topology/remesh.h"
 
 #include <algorithm>
@@ -177,12 +176,7 @@ TopologyContext Simulation::topology_context(std::vector<Vec3> displacement)
 void Simulation::change_topology(TopologyContext &context)
 {
   const Timing::Scope scope(timing, "topology");
-  const unsigned parts = motion_substeps(context);
-  for (unsigned k = 0; k < parts; ++k)
-  {
-    collide(context);
-    move_nodes(context, 1.0 / parts);
-  }
+  ddfem::move_lines(context, candidates);
   const SplittingModel model{parameters.medium, parameters.core_cutoff_radius, parameters.mobility};
   // The network has changed since the last solve, but its correction field has not: it is read at the new points.
   split_nodes(context, model,

@@ -7,6 +7,7 @@
 #include "coupling/run_output.h"
 #include "coupling/timing.h"
 #include "dd/forces/nodal_forces.h"
+#include "dd/topology/collisions/candidate_list.h"
 #include "dd/topology/topology_context.h"
 
 #include <mpi.h>
@@ -83,6 +84,7 @@ private:
   StabilisedRungeKutta integrator;
   SegmentPointStress correction;
   GrainSolution solution;
+  CandidateList candidates;
   SweptArea swept;
   TopologyCounts counts;
   SymTensor total_plastic_strain = SymTensor::Zero();

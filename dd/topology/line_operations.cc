@@ -1,5 +1,6 @@
 #include "dd/topology/line_operations.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace ddfem
@@ -12,19 +13,40 @@ std::vector<SegmentIndex> copy_of_arms(const Network &network, const NodeIndex i
   return {arms.begin(), arms.end()};
 }
 
+SegmentOrigin reversed(const SegmentOrigin &o)
+{
+  return {o.lineage, o.end_displacement, o.start_displacement};
+}
+
+/// The origin of @p s for the line sense that leaves node @p i.
+SegmentOrigin origin_from(const TopologyContext &context, const SegmentIndex s, const NodeIndex i)
+{
+  const SegmentOrigin o = context.origin(s);
+  return context.network.start(s) == i ? o : reversed(o);
+}
+
+/// Two lines that have become one.
+SegmentOrigin combined(const SegmentOrigin &o, const SegmentOrigin &p)
+{
+  return {std::min(o.lineage, p.lineage), 0.5 * (o.start_displacement + p.start_displacement),
+          0.5 * (o.end_displacement + p.end_displacement)};
+}
+
 /// Joins a -> c with Burgers vector b. If a segment joins the two already the Burgers vectors add up: opposite ones
 /// annihilate, others make a product line whose plane is looked up.
-void join(TopologyContext &context, const NodeIndex a, const NodeIndex c, const Vec3 &b, const PlaneIndex plane)
+void join(TopologyContext &context, const NodeIndex a, const NodeIndex c, const Vec3 &b, const PlaneIndex plane,
+          const SegmentOrigin &origin)
 {
   Network &network = context.network;
   const auto existing = network.find(a, c);
   if (!existing)
   {
-    network.insert(Segment{a, c, b, plane});
+    context.insert_segment(Segment{a, c, b, plane}, origin);
     return;
   }
   const Vec3 sum = network.burgers_from(*existing, a) + b;
   const PlaneIndex old_plane = network.plane(*existing);
+  const SegmentOrigin both = combined(origin, origin_from(context, *existing, a));
   network.erase(*existing);
   if (sum.norm() < 1e-6 * b.norm())
   {
@@ -32,12 +54,13 @@ void join(TopologyContext &context, const NodeIndex a, const NodeIndex c, const 
     return;
   }
   PlaneIndex product = plane;
-  if (!(plane == old_plane))
+  const bool same_plane = plane.is_valid() && old_plane.is_valid() && network.planes().parallel(plane, old_plane);
+  if (!same_plane && !(plane == old_plane))
   {
     const Vec3 xi = network.minimum_image(network.position(c) - network.position(a)).normalized();
     product = context.product_plane(network, xi, sum, network.position(a));
   }
-  network.insert(Segment{a, c, sum, product});
+  context.insert_segment(Segment{a, c, sum, product}, both);
 }
 } // namespace
 
@@ -56,10 +79,14 @@ NodeIndex split_segment(TopologyContext &context, const SegmentIndex s, const Ve
 {
   Network &network = context.network;
   const Segment old = network.get(s);
+  const SegmentOrigin origin = context.origin(s);
+  const double u = network.minimum_image(x - network.position(old.start)).norm() / network.length(s);
+  const Vec3 here = (1 - u) * origin.start_displacement + u * origin.end_displacement;
   const NodeIndex m = context.insert_node(Node{x, NodeConstraint::free}, displacement);
   network.erase(s);
-  network.insert(Segment{old.start, m, old.burgers, old.plane});
-  network.insert(Segment{m, old.end, old.burgers, old.plane});
+  context.insert_segment(Segment{old.start, m, old.burgers, old.plane},
+                         {origin.lineage, origin.start_displacement, here});
+  context.insert_segment(Segment{m, old.end, old.burgers, old.plane}, {origin.lineage, here, origin.end_displacement});
   return m;
 }
 
@@ -93,9 +120,10 @@ void merge_nodes(TopologyContext &context, const NodeIndex kept, const NodeIndex
     const Vec3 b = network.burgers_from(s, gone);
     const PlaneIndex plane = network.plane(s);
     const NodeIndex other = network.other_end(s, gone);
+    const SegmentOrigin origin = origin_from(context, s, gone);
     network.erase(s);
     if (other != kept) // a segment between the two has shrunk to nothing
-      join(context, kept, other, b, plane);
+      join(context, kept, other, b, plane, origin);
     if (other != kept && network.degree(other) == 0)
       erase_if_orphan(network, other);
   }
@@ -111,9 +139,10 @@ NodeIndex detach_arms(TopologyContext &context, const NodeIndex i, std::span<con
   for (const SegmentIndex s : std::vector<SegmentIndex>(arms.begin(), arms.end()))
   {
     Segment moved = network.get(s);
+    const SegmentOrigin origin = context.origin(s);
     (moved.start == i ? moved.start : moved.end) = n;
     network.erase(s);
-    network.insert(moved);
+    context.insert_segment(moved, origin);
   }
   return n;
 }
@@ -130,11 +159,13 @@ void remove_node(TopologyContext &context, const NodeIndex i)
   const Vec3 xa = x + network.minimum_image(network.position(a) - x);
   const Vec3 xc = x + network.minimum_image(network.position(c) - x);
   context.swept.add_triangle(xa, xc, x, b, plane);
+  const SegmentOrigin origin{context.origin(arms[0]).lineage, origin_from(context, arms[0], a).start_displacement,
+                             origin_from(context, arms[1], i).end_displacement};
   network.erase(arms[0]);
   network.erase(arms[1]);
   network.erase(i);
   if (a != c)
-    join(context, a, c, b, plane);
+    join(context, a, c, b, plane, origin);
   erase_if_orphan(network, a);
   erase_if_orphan(network, c);
 }

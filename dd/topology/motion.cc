@@ -3,6 +3,7 @@
 #include "dd/topology/line_operations.h"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace ddfem
@@ -44,13 +45,25 @@ bool is_impenetrable(const GrainShape &shape, const Vec3 &x)
   return shape.face_kind(shape.face(x)) == FaceKind::impenetrable;
 }
 
-void slide_surface_node(TopologyContext &context, const NodeIndex i, const Vec3 &target)
+/// Where a surface node that heads for @p target slides to; empty if an impenetrable face is in its way.
+std::optional<Vec3> sliding_target(const TopologyContext &context, const NodeIndex i, const Vec3 &target)
 {
   const auto x = project_to_surface(*context.shape, target, plane_normal_or_zero(context.network, i));
-  if (x && !is_impenetrable(*context.shape, *x))
+  return x && !is_impenetrable(*context.shape, *x) ? x : std::nullopt;
+}
+
+void slide_surface_node(TopologyContext &context, const NodeIndex i, const Vec3 &target)
+{
+  if (const auto x = sliding_target(context, i, target))
     move_node(context, i, *x);
   else
     context.remaining[i.value].setZero();
+}
+
+/// Where an interior node stops that heads for @p target, outside the grain, and meets an impenetrable face at @p crossing.
+Vec3 stopping_point(const TopologyContext &context, const NodeIndex i, const Vec3 &target, const Vec3 &crossing)
+{
+  return project_to_surface(*context.shape, target, plane_normal_or_zero(context.network, i)).value_or(crossing);
 }
 
 /// Cuts the line at node @p i, which has just reached a free face.
@@ -78,8 +91,7 @@ void move_interior_node(TopologyContext &context, const NodeIndex i, const Vec3 
   const Vec3 crossing = surface_crossing(shape, context.network.position(i), target);
   if (is_impenetrable(shape, crossing))
   {
-    const auto x = project_to_surface(shape, target, plane_normal_or_zero(context.network, i));
-    move_node(context, i, x ? *x : crossing);
+    move_node(context, i, stopping_point(context, i, target, crossing));
     return;
   }
   move_node(context, i, crossing);
@@ -92,6 +104,25 @@ Vec3 onto_surface(const GrainShape &shape, const Vec3 &x, const Vec3 &normal)
   return project_to_surface(shape, x, normal).value_or(x);
 }
 } // namespace
+
+void bend_displacements_along_surface(TopologyContext &context)
+{
+  if (!context.shape)
+    return;
+  const Network &network = context.network;
+  for (const NodeIndex i : network.nodes())
+  {
+    Vec3 &dx = context.remaining[i.value];
+    if (dx.isZero(0))
+      continue;
+    const Vec3 x = network.position(i), target = x + dx;
+    if (network.constraint(i) == NodeConstraint::surface)
+      dx = sliding_target(context, i, target).value_or(x) - x;
+    else if (context.shape->signed_distance(target) > 0)
+      if (const Vec3 crossing = surface_crossing(*context.shape, x, target); is_impenetrable(*context.shape, crossing))
+        dx = stopping_point(context, i, target, crossing) - x;
+  }
+}
 
 void move_nodes(TopologyContext &context, const double fraction)
 {
