@@ -154,7 +154,8 @@ public:
   /// In the order of insertion; in the order of persistent ids after clean().
   std::span<const SegmentIndex> connected_segments(NodeIndex i) const { return arms_[i.value].view(); }
   std::size_t degree(NodeIndex i) const { return arms_[i.value].size(); }
-  /// Physical node: degree other than two, constrained, or with two arms of different Burgers vector or glide plane.
+  /// Physical node: degree other than two, constrained, or with two arms of different Burgers vector or glide plane
+  /// (parallel planes that share a node are one; in a periodic cell they may be images of each other).
   bool is_physical(NodeIndex i) const;
 
   GlidePlanes &planes() { return planes_; }

@@ -43,6 +43,27 @@ public:
 private:
   std::uint64_t state_ = 0;
 };
+/// Distance of @p x from a plane or, in a periodic cell, from the nearest of its images: lines that have merged across the
+/// boundary keep the plane of the image that each came from.
+double distance_from_images(const GlidePlane &plane, const Vec3 &x, const Vec3 &period)
+{
+  const double plain = plane.normal.dot(x) - plane.offset;
+  constexpr double hardly_off = 1e-3; // nm: no image is nearer
+  if (std::abs(plain) < hardly_off)
+    return plain;
+  double nearest = plain;
+  constexpr int images = 3;
+  const auto range = [&](const int axis) { return period[axis] > 0 ? images : 0; };
+  for (int i = -range(0); i <= range(0); ++i)
+    for (int j = -range(1); j <= range(1); ++j)
+      for (int k = -range(2); k <= range(2); ++k)
+      {
+        const double d = plain + plane.normal.dot(Vec3(i, j, k).cwiseProduct(period));
+        if (std::abs(d) < std::abs(nearest))
+          nearest = d;
+      }
+  return nearest;
+}
 } // namespace
 
 std::string Network::describe(NodeIndex i) const
@@ -94,9 +115,8 @@ void Network::check_plane(SegmentIndex s, double tolerance, std::vector<Invarian
            ".");
   if (!(std::abs(direction(s).dot(n)) <= 2 * tolerance))
     report("the line leaves the glide plane by " + text_of(direction(s).dot(n)) + " between its ends.");
-  // Across the boundary of a periodic cell it is the image of the end that lies on the plane.
-  const double at_start = planes_.distance(plane(s), position(start(s)));
-  const double at_end = planes_.distance(plane(s), position(start(s)) + direction(s));
+  const double at_start = distance_from_images(planes_[plane(s)], position(start(s)), period_);
+  const double at_end = distance_from_images(planes_[plane(s)], position(start(s)) + direction(s), period_);
   if (!(std::abs(at_start) <= tolerance))
     report("its start is " + text_of(at_start) + " off the glide plane.");
   if (!(std::abs(at_end) <= tolerance))

@@ -61,23 +61,38 @@ std::vector<End> choices(const TopologyContext &c, const LinePoint &point, const
   return found;
 }
 
-/// Normals of the glide planes that meet at a point; zero for a line without one.
-void append_normals(const TopologyContext &c, const End &e, std::vector<Vec3> &normals)
+/// Directions in which a line may not move: the normal of its glide plane, or everything across a line without one.
+void append_forbidden(const TopologyContext &c, const SegmentIndex s, const double t, std::vector<Vec3> &directions)
 {
+  const Network &n = c.network;
+  if (n.plane(s).is_valid())
+  {
+    directions.push_back(n.normal(s));
+    return;
+  }
+  const Vec3 xi = n.minimum_image(c.position_at(n.end(s), t) - c.position_at(n.start(s), t)).normalized();
+  const Vec3 across = xi.unitOrthogonal();
+  directions.insert(directions.end(), {across, xi.cross(across)});
+}
+
+std::vector<Vec3> forbidden_directions(const TopologyContext &c, const End &e, const double t)
+{
+  std::vector<Vec3> directions;
   if (e.is_cut())
-    normals.push_back(c.network.normal(e.point.segment));
+    append_forbidden(c, e.point.segment, t, directions);
   else
     for (const SegmentIndex s : c.network.connected_segments(e.node))
-      normals.push_back(c.network.normal(s));
+      append_forbidden(c, s, t, directions);
+  return directions;
 }
 
 /// Point nearest to @p x that lies on the glide planes of all arms of both ends (through the points' own positions: in a
-/// periodic cell the plane's offset belongs to another image). Empty if there is none within twice the capture radius.
-std::optional<Vec3> common_point(const TopologyContext &c, const End &a, const End &b, const Vec3 &xb, const Vec3 &x)
+/// periodic cell the plane's offset belongs to another image), and on those without a plane. Empty if there is none within
+/// twice the capture radius.
+std::optional<Vec3> common_point(const TopologyContext &c, const End &a, const End &b, const Vec3 &xb, const Vec3 &x,
+                                 const double t)
 {
-  std::vector<Vec3> of_a, of_b;
-  append_normals(c, a, of_a);
-  append_normals(c, b, of_b);
+  const auto of_a = forbidden_directions(c, a, t), of_b = forbidden_directions(c, b, t);
   Eigen::Matrix<double, Eigen::Dynamic, 3> normals(static_cast<Eigen::Index>(of_a.size() + of_b.size()), 3);
   Eigen::VectorXd offsets(normals.rows());
   Eigen::Index row = 0;
@@ -113,7 +128,7 @@ std::optional<MergePlan> plan_for(const TopologyContext &c, End a, End b, const 
     return std::nullopt;
   const bool held = hold_of(c, a) != Hold::free;
   const Vec3 xb = a.position + c.network.minimum_image(b.position - a.position);
-  const auto x = common_point(c, a, b, xb, held ? a.position : Vec3(0.5 * (a.position + xb)));
+  const auto x = common_point(c, a, b, xb, held ? a.position : Vec3(0.5 * (a.position + xb)), t);
   if (!x || (held && (*x - a.position).norm() > 1e-6 * c.settings.collision_radius))
     return std::nullopt;
   a.target = held ? a.position : *x;
