@@ -99,46 +99,36 @@ bool visit_falling_roots(const Polynomial &polynomial, const double a, const dou
 }
 
 /// The first local minimum of @p f at or after @p a, to @p tolerance; @p b if f falls all the way to b. The search walks in
-/// steps of @p step until f no longer falls, and then by golden section; of equal values the first counts. Minima that are
-/// followed by a deeper one within a step may be passed over.
+/// steps of @p step until f no longer falls, and then by golden section; of equal values the first counts. Minima within one
+/// step of which there is a deeper one may be passed over.
 template <class Function>
 double first_local_minimum(const Function &f, const double a, const double b, const double step, const double tolerance)
 {
-  double left = a, middle = a, right = std::min(a + step, b);
-  double f_left = f(a), f_middle = f_left, f_right = f(right);
-  while (f_right < f_middle && right < b)
+  // Always left <= middle <= right, and f(middle) is the smallest of the three.
+  double left = a, middle = a, right = std::min(a + step, b), f_middle = f(a);
+  for (double f_right = f(right); f_right < f_middle && right > middle; f_right = f(right))
   {
     left = middle;
-    f_left = f_middle;
     middle = right;
     f_middle = f_right;
     right = std::min(right + step, b);
-    f_right = f(right);
   }
-  const double f_end = f_right, end = right;
-  constexpr double golden = 0.6180339887498949;
-  double x1 = right - golden * (right - left), x2 = left + golden * (right - left), f1 = f(x1), f2 = f(x2);
+  constexpr double golden = 0.3819660112501051;
   while (right - left > tolerance)
-    if (f1 <= f2 || f1 >= f_left)
+  {
+    const bool before = middle - left > right - middle;
+    const double x = middle + golden * ((before ? left : right) - middle), fx = f(x);
+    if (fx < f_middle || (before && fx == f_middle))
     {
-      right = x2;
-      x2 = x1;
-      f2 = f1;
-      x1 = right - golden * (right - left);
-      f1 = f(x1);
+      (before ? right : left) = middle;
+      middle = x;
+      f_middle = fx;
     }
     else
     {
-      left = x1;
-      f_left = f1;
-      x1 = x2;
-      f1 = f2;
-      x2 = left + golden * (right - left);
-      f2 = f(x2);
+      (before ? left : right) = x;
     }
-  const double best = std::min(f1, f2);
-  if (f(a) <= best && right - a <= 2 * tolerance)
-    return a;
-  return right == end && f_end < best ? end : 0.5 * (left + right);
+  }
+  return middle;
 }
 } // namespace ddfem

@@ -212,7 +212,7 @@ double end_of_approach(const Distance &d, const double t, const double t1, const
   // d changes by a fraction of the radius in a step. Once it vanishes to rounding, it is at its minimum.
   const double step = std::max(0.25 * radius / travel, (t1 - t) / 256);
   const auto floored = [&](const double s) { return std::max(d(s), 1e-9 * radius); };
-  return first_local_minimum(floored, t, t1, step, 1e-7 * duration);
+  return first_local_minimum(floored, t, t1, step, std::max(1e-7 * duration, 1e-15 * std::abs(t1)));
 }
 
 /// Two segments seen from the start of the first.
