@@ -16,22 +16,32 @@ constexpr double binomial(const std::size_t n, const std::size_t k)
   return b;
 }
 
-/// Coefficients of the product of two polynomials, each given by its Bernstein coefficients (degree + 1 of them) on the same
-/// interval. @p multiply forms the product of two coefficients: of numbers, or a dot or cross product of vectors.
-/// (Farin, Curves and Surfaces for CAGD, ch. 6: c_k = sum_{i+j=k} C(m,i) C(n,j) / C(m+n,k) p_i q_j.)
-template <class A, std::size_t m, class B, std::size_t n, class Multiply>
-auto bernstein_product(const std::array<A, m> &p, const std::array<B, n> &q, const Multiply &multiply)
+/// weight[i][j] = C(m, i) C(n, j) / C(m + n, i + j), by the numbers of coefficients m + 1 and n + 1.
+template <std::size_t size_p, std::size_t size_q>
+constexpr auto bernstein_weights = []
 {
-  using Value = decltype(multiply(p[0], q[0]));
-  std::array<Value, m + n - 1> product;
-  for (std::size_t k = 0; k < m + n - 1; ++k)
+  std::array<std::array<double, size_q>, size_p> weights{};
+  for (std::size_t i = 0; i < size_p; ++i)
+    for (std::size_t j = 0; j < size_q; ++j)
+      weights[i][j] = binomial(size_p - 1, i) * binomial(size_q - 1, j) / binomial(size_p + size_q - 2, i + j);
+  return weights;
+}();
+
+/// Coefficients of the product of two polynomials, each given by its Bernstein coefficients (degree + 1 of them)
+/// on the same interval. @p multiply forms the product of two coefficients: of numbers, or a dot or cross product of
+/// vectors. (Farin, Curves and Surfaces for CAGD, ch. 6: c_k = sum_{i+j=k} C(m,i) C(n,j) / C(m+n,k) p_i q_j.)
+template <class A, std::size_t size_p, class B, std::size_t size_q, class Multiply>
+auto bernstein_product(const std::array<A, size_p> &p, const std::array<B, size_q> &q, const Multiply &multiply)
+{
+  constexpr auto &weights = bernstein_weights<size_p, size_q>;
+  std::array<decltype(multiply(p[0], q[0])), size_p + size_q - 1> product;
+  for (std::size_t j = 0; j < size_q; ++j)
+    product[j] = weights[0][j] * multiply(p[0], q[j]);
+  for (std::size_t i = 1; i < size_p; ++i)
   {
-    const std::size_t first = k < n ? 0 : k - n + 1, last = std::min(k, m - 1);
-    const auto weight = [&](const std::size_t i)
-    { return binomial(m - 1, i) * binomial(n - 1, k - i) / binomial(m + n - 2, k); };
-    product[k] = weight(first) * multiply(p[first], q[k - first]);
-    for (std::size_t i = first + 1; i <= last; ++i)
-      product[k] += weight(i) * multiply(p[i], q[k - i]);
+    for (std::size_t j = 0; j + 1 < size_q; ++j)
+      product[i + j] += weights[i][j] * multiply(p[i], q[j]);
+    product[i + size_q - 1] = weights[i][size_q - 1] * multiply(p[i], q[size_q - 1]);
   }
   return product;
 }
