@@ -46,8 +46,8 @@ auto bernstein_product(const std::array<A, size_p> &p, const std::array<B, size_
   return product;
 }
 
-/// Number of changes of sign in a sequence, zero counting as negative. For Bernstein coefficients it bounds the number of
-/// roots inside the interval and differs from it by an even number (Descartes): none for 0, one for 1.
+/// Number of changes of sign in a sequence, zero counting as negative. For Bernstein coefficients it bounds the
+/// number of roots inside the interval and differs from it by an even number (Descartes): none for 0, one for 1.
 template <std::size_t n> unsigned sign_variations(const std::array<double, n> &coefficients)
 {
   unsigned variations = 0;
@@ -56,9 +56,9 @@ template <std::size_t n> unsigned sign_variations(const std::array<double, n> &c
   return variations;
 }
 
-/// Where @p f falls through zero, for f(a) > 0 >= f(b), a < b: a point x with f(x) <= 0 no more than @p tolerance behind
-/// one where f > 0. Interpolation with the worst case of bisection (ITP: Oliveira and Takahashi, ACM Trans. Math. Softw.
-/// 47, 5, 2020).
+/// Where @p f falls through zero, for f(a) > 0 >= f(b), a < b: a point x with f(x) <= 0 no more than @p tolerance
+/// behind one where f > 0. Interpolation with the worst case of bisection (ITP: Oliveira and Takahashi, ACM Trans.
+/// Math. Softw. 47, 5, 2020).
 template <class Function> double falling_root(const Function &f, double a, double b, const double tolerance)
 {
   double fa = f(a), fb = f(b);
@@ -83,13 +83,13 @@ template <class Function> double falling_root(const Function &f, double a, doubl
   return b;
 }
 
-/// Visits the points in [a, b] where a polynomial falls from above to zero, in increasing order, until @p accept returns
-/// true, and returns whether it did. Intervals are halved until their coefficients have at most one change of sign; those
-/// shorter than @p resolution that still have more are visited once (a minimum that touches zero, say).
+/// Visits the points in [a, b] where a polynomial falls from above to zero, in increasing order, until @p accept
+/// returns true, and returns whether it did. Intervals are halved until their coefficients have at most one change of
+/// sign; those shorter than @p resolution that still have more are visited once (a minimum that touches zero, say).
 ///
-/// @p polynomial has coefficients(a, b), its Bernstein coefficients on any interval, formed afresh from what it is made of
-/// so that they are as accurate as the interval is small; value(t); and covered(a, b), whether the interval need not be
-/// looked at. Roots are found to @p tolerance.
+/// @p polynomial has coefficients(a, b), its Bernstein coefficients on any interval, formed afresh from what it is
+/// made of so that they are as accurate as the interval is small; value(t); and covered(a, b), whether the interval
+/// need not be looked at. Roots are found to @p tolerance.
 template <class Polynomial, class Accept>
 bool visit_falling_roots(const Polynomial &polynomial, const double a, const double b, const double resolution,
                          const double tolerance, const Accept &accept)
@@ -108,9 +108,9 @@ bool visit_falling_roots(const Polynomial &polynomial, const double a, const dou
          visit_falling_roots(polynomial, middle, b, resolution, tolerance, accept);
 }
 
-/// The first local minimum of @p f at or after @p a, to @p tolerance; @p b if f falls all the way to b. The search walks in
-/// steps of @p step until f no longer falls, and then by golden section; of equal values the first counts. Minima within one
-/// step of which there is a deeper one may be passed over.
+/// The first local minimum of @p f at or after @p a, to @p tolerance; @p b if f falls all the way to b. The search
+/// walks in steps of @p step until f no longer falls, and then by golden section; of equal values the first counts.
+/// Minima within one step of which there is a deeper one may be passed over.
 template <class Function>
 double first_local_minimum(const Function &f, const double a, const double b, const double step, const double tolerance)
 {

@@ -1,32 +1,35 @@
-// Roots of distance polynomials: extends B.1 of A. Etcheverry's thesis (OptiDis, Bordeaux 2015), where |P12(t)| is taken as
-// constant and only the minima of the distance are looked for.
+// Roots of distance polynomials: extends B.1 of A. Etcheverry's thesis (OptiDis, Bordeaux 2015), where |P12(t)| is
+// taken as constant and only the minima of the distance are looked for.
 //
-// All ends move straight, so the differences of their positions are linear in time, and the distance between two features
-// falls to the level R where a polynomial falls through zero:
+// All ends move straight, so the differences of their positions are linear in time, and the distance between two
+// features falls to the level R where a polynomial falls through zero:
 //   end, end         |p(t)|^2 - R^2                                 degree 2
 //   end, line        |P12 x P13|^2 - R^2 |P12|^2                    degree 4
 //   line, line       det(P13, P12, P34)^2 - R^2 |P12 x P34|^2       degree 6
-// The distance of the segments is at any time that of one of these pairs of features, therefore the first time at which it is R
-// is a root of one of the polynomials. A root counts if the distance of the segments is then no more than R: there are no
-// false contacts, whatever the rounding.
+// The distance of the segments is at any time that of one of these pairs of features, therefore the first time at
+// which it is R is a root of one of the polynomials. A root counts if the distance of the segments is then no more
+// than R: there are no false contacts, whatever the rounding.
 //
-// Why nothing is missed. The last two polynomials vanish identically, or to rounding, where a line has no length or two lines
-// are parallel. They are not asked there, because another feature is as near to within a fraction of contact_margin:
-// - The foot of an end on a line of length l is within l/2 of an end of that line: if d is the distance from the line, there
-//   are two ends within sqrt(d^2 + l^2/4).
-// - Two lines that cross (seen along their common normal) within both segments at the angle theta: go from the crossing along
-//   both until the first of the two ends at, say, the length x from the crossing, x <= l, the shorter length. Its foot is
-//   x cos(theta) from the crossing, thus within the other segment, and its distance from it is
+// Why nothing is missed. The last two polynomials vanish identically, or to rounding, where a line has no length or
+// two lines are parallel. They are not asked there, because another feature is as near to within a fraction of
+// contact_margin:
+// - The foot of an end on a line of length l is within l/2 of an end of that line: if d is the distance from the
+//   line, there are two ends within sqrt(d^2 + l^2/4).
+// - Two lines that cross (seen along their common normal) within both segments at the angle theta: go from the
+//   crossing along both until the first of the two ends at, say, the length x from the crossing, x <= l, the shorter
+//   length. Its foot is x cos(theta) from the crossing, thus within the other segment, and its distance from it is
 //   sqrt(d^2 + x^2 sin^2(theta)) <= sqrt(d^2 + l^2 sin^2(theta)).
-// Lines with l or l sin(theta) below negligible_extent * R are covered in this sense, with d wrong by 5e-5 R at most. Elsewhere the
-// rounding of the positions, eps X for segments and displacements of extent X, changes the distance of two lines that
-// the polynomial implies by some eps X / sin(theta) < eps X l / (0.01 R): 2e-4 R for X = l = 1e5 R. Coefficients are formed
-// anew on each interval in which roots are looked for, or they would be wrong by eps times the largest value of
-// the polynomial in the whole step. A root that is spurious by that much is caught by a second search (see Search::run).
+// Lines with l or l sin(theta) below negligible_extent * R are covered in this sense, with d wrong by 5e-5 R at most.
+// Elsewhere the rounding of the positions, eps X for segments and displacements of extent X, changes the distance of
+// two lines that the polynomial implies by some eps X / sin(theta) < eps X l / (0.01 R): 2e-4 R for X = l = 1e5 R.
+// Coefficients are formed anew on each interval in which roots are looked for, or they would be wrong by eps times
+// the largest value of the polynomial in the whole step. A root that is spurious by that much is caught by a second
+// search (see Search::run).
 #include "dd/topology/collisions/contact.h"
 
 #include "dd/elasticity/distance.h"
 #include "dd/topology/collisions/bernstein.h"
+#include "dd/topology/collisions/distance_polynomials.h"
 
 #include <limits>
 
@@ -34,119 +37,12 @@ namespace ddfem
 {
 namespace
 {
-/// Lengths, or widths of a crossing, below this fraction of the level are left to other features.
-constexpr double negligible_extent = 1e-2;
+using namespace distance_polynomials;
+
 /// The polynomials are solved for levels below R by these fractions, so that the distance at a root is safely within R.
 constexpr double fine_shift = 1e-8, coarse_shift = contact_margin / 2;
 /// Roots at which the distance exceeds R by no more than this fraction may be off by rounding.
 constexpr double near_miss = contact_margin / 10;
-
-/// A vector that is linear in time.
-struct LinearVector
-{
-  Vec3 at_zero, rate;
-
-  Vec3 operator()(const double t) const { return at_zero + t * rate; }
-};
-
-LinearVector operator+(const LinearVector &a, const LinearVector &b)
-{
-  return {a.at_zero + b.at_zero, a.rate + b.rate};
-}
-
-LinearVector operator-(const LinearVector &a, const LinearVector &b)
-{
-  return {a.at_zero - b.at_zero, a.rate - b.rate};
-}
-
-LinearVector line(const MovingSegment &a)
-{
-  return {a.end - a.start, a.end_velocity - a.start_velocity};
-}
-
-constexpr auto dot = [](const Vec3 &a, const Vec3 &b) { return a.dot(b); };
-constexpr auto cross = [](const Vec3 &a, const Vec3 &b) -> Vec3 { return a.cross(b); };
-constexpr auto multiply = [](const double a, const double b) { return a * b; };
-constexpr std::array<double, 3> one = {1, 1, 1};
-
-/// Squared distance of a point from a line minus the squared level, times the squared length of the line.
-struct PointLine
-{
-  LinearVector line, point; ///< the line from its first end, the point seen from there
-  double level2;
-
-  std::array<double, 5> coefficients(const double a, const double b) const
-  {
-    const std::array<Vec3, 2> e = {line(a), line(b)}, w = {point(a), point(b)};
-    const auto c = bernstein_product(e, w, cross);
-    auto result = bernstein_product(c, c, dot);
-    const auto length2 = bernstein_product(bernstein_product(e, e, dot), one, multiply);
-    for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] -= level2 * length2[i];
-    return result;
-  }
-  double value(const double t) const
-  {
-    const Vec3 e = line(t);
-    return e.cross(point(t)).squaredNorm() - level2 * e.squaredNorm();
-  }
-  bool covered(const double a, const double b) const
-  {
-    return std::max(line(a).squaredNorm(), line(b).squaredNorm()) <= negligible_extent * negligible_extent * level2;
-  }
-};
-
-/// Squared distance of two lines minus the squared level, times the squared product of lengths and sine of the angle.
-struct LineLine
-{
-  LinearVector p12, p34, p13;
-  double level2;
-
-  std::array<Vec3, 3> normal(const double a, const double b) const
-  {
-    return bernstein_product(std::array<Vec3, 2>{p12(a), p12(b)}, std::array<Vec3, 2>{p34(a), p34(b)}, cross);
-  }
-  std::array<double, 7> coefficients(const double a, const double b) const
-  {
-    const auto n = normal(a, b);
-    const auto det = bernstein_product(std::array<Vec3, 2>{p13(a), p13(b)}, n, dot);
-    auto result = bernstein_product(det, det, multiply);
-    const auto normal2 = bernstein_product(bernstein_product(n, n, dot), one, multiply);
-    for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] -= level2 * normal2[i];
-    return result;
-  }
-  double value(const double t) const
-  {
-    const Vec3 n = p12(t).cross(p34(t));
-    const double det = p13(t).dot(n);
-    return det * det - level2 * n.squaredNorm();
-  }
-  bool covered(const double a, const double b) const
-  {
-    // |normal| / (longer length) = shorter length times the sine of the angle. Norms are bounded by the coefficients.
-    const auto shortest2 = [&](const LinearVector &p)
-    {
-      const Vec3 pa = p(a), pb = p(b);
-      return std::max(0.0, std::min({pa.squaredNorm(), pa.dot(pb), pb.squaredNorm()}));
-    };
-    const auto n = normal(a, b);
-    const double largest2 = std::max({n[0].squaredNorm(), n[1].squaredNorm(), n[2].squaredNorm()});
-    return largest2 <= negligible_extent * negligible_extent * level2 * std::max(shortest2(p12), shortest2(p34));
-  }
-};
-
-/// Time in [t0, t1] at which |x| falls to @p level, if it does; |x(t0)| > level.
-std::optional<double> time_of_entry(const LinearVector &x, const double level, const double t0, const double t1)
-{
-  const Vec3 p = x(t0);
-  const double b = p.dot(x.rate), distance = p.norm();
-  const double discriminant = level * level * x.rate.squaredNorm() - p.cross(x.rate).squaredNorm();
-  if (b >= 0 || discriminant < 0)
-    return std::nullopt;
-  const double t = t0 + (distance - level) * (distance + level) / (std::sqrt(discriminant) - b);
-  return t <= t1 ? std::optional(t) : std::nullopt;
-}
 
 /// What d must fall to, for the distance d at the start of the interval.
 double level_of_contact(const double d, const double radius)
@@ -258,8 +154,9 @@ struct RelativePair
     return distance_point_segment(Vec3::Zero(), c0, c1).squared > apart * apart;
   }
 
-  /// A time before which the segments do not come within @p reach, from their nearest points at time @p t: along the line
-  /// through these points the ends of the two move straight, and as long as they are apart by more so are the segments.
+  /// A time before which the segments do not come within @p reach, from their nearest points at time @p t: along the
+  /// line through these points the ends of the two move straight, and as long as they are apart by more so are the
+  /// segments.
   double earliest_within(const double reach, const double t, const PairDistance &nearest) const
   {
     const Vec3 u = (p13(t) + nearest.second * p34(t) - nearest.first * p12(t)).normalized();

@@ -33,9 +33,10 @@ struct Contact
 ///   R = (1 + contact_margin) radius             if d(t0) is more than that,
 ///   R = (1 - contact_margin) d(t0)              if the two are within it at t0 already: they must come nearer;
 ///   contact at t0 at once                       if d(t0) < touching_fraction * radius: they touch.
-/// The margin covers the rounding of the polynomial roots from which the times come: no approach below R / (1 + contact_margin),
-/// which is `radius` in the first case, is missed, and the distance at a contact is never above R. This holds for segments and
-/// displacements up to some 1e5 R; contact.cc has the argument. The radius must be positive.
+/// The margin covers the rounding of the polynomial roots from which the times come: no approach below R / (1 +
+/// contact_margin), which is `radius` in the first case, is missed, and the distance at a contact is never above R.
+/// This holds for segments and displacements up to some 1e5 R; contact.cc has the argument. The radius must be
+/// positive.
 inline constexpr double contact_margin = 1e-3;
 inline constexpr double touching_fraction = 1e-6;
 
@@ -45,9 +46,9 @@ std::optional<Contact> first_contact(const MovingSegment &a, const MovingSegment
 
 /// Two arms of one node, both of which start at it (same start and start_velocity), that close like scissors: d is the
 /// distance of the end of one arm from the other arm, the smaller of the two, and counts only while the arms make an
-/// acute angle. Arms that turn from obtuse to acute within the interval are taken as if it began there: d, then the length
-/// of the shorter arm, must fall from above R, or by contact_margin if it is within R already. closest_time is where the
-/// angle stops being acute if d still falls there.
+/// acute angle. Arms that turn from obtuse to acute within the interval are taken as if it began there: d, then the
+/// length of the shorter arm, must fall from above R, or by contact_margin if it is within R already. closest_time is
+/// where the angle stops being acute if d still falls there.
 std::optional<Contact> first_hinge_contact(const MovingSegment &a, const MovingSegment &b, double radius, double t0,
                                            double t1);
 

@@ -14,8 +14,8 @@ namespace ddfem::contact_oracle
 using Real = long double;
 using Point = Eigen::Matrix<Real, 3, 1>;
 
-/// The shortest vector between two segments p, p + u and q, q + v (Ericson, Real-Time Collision Detection, 5.1.9). For the
-/// nearly parallel, whose stationary point is rounding, from the ends of the first segment also.
+/// The shortest vector between two segments p, p + u and q, q + v (Ericson, Real-Time Collision Detection, 5.1.9).
+/// For the nearly parallel, whose stationary point is rounding, from the ends of the first segment also.
 inline Point separation(const Point &p, const Point &u, const Point &q, const Point &v)
 {
   const Point w = p - q;
@@ -58,8 +58,8 @@ inline Real distance(const MovingSegment &a, const MovingSegment &b, const Real 
 }
 
 /// A time in [t0, t1] at which the distance is no more than @p level, and before which it is not below
-/// (1 - @p slack) level, or -1 if it is nowhere below that. On an interval the distance is at least that of the projections on
-/// any direction at the two ends, because projections of ends are linear in time.
+/// (1 - @p slack) level, or -1 if it is nowhere below that. On an interval the distance is at least that of the
+/// projections on any direction at the two ends, because projections of ends are linear in time.
 inline Real first_within(const MovingSegment &a, const MovingSegment &b, const Real level, const Real slack,
                          const Real t0, const Real t1, const Real width = 1e-10L)
 {
@@ -109,7 +109,8 @@ inline Real smallest_distance(const MovingSegment &a, const MovingSegment &b, co
   return best < least ? 0 : best;
 }
 
-/// Random pairs. Lengths are about 40, displacements 0.01 to 80, and the pairs come within a few units: the radius is about 1.
+/// Random pairs. Lengths are about 40, displacements 0.01 to 80, and the pairs come within a few units: the radius is
+/// about 1.
 class RandomPairs
 {
 public:
@@ -125,7 +126,8 @@ public:
   }
   Vec3 direction() { return vector().normalized(); }
 
-  /// Segments along the given vectors that at time @p t have points at random fractions (a third of them ends) separated by
+  /// Segments along the given vectors that at time @p t have points at random fractions (a third of them ends)
+  /// separated by
   /// @p gap, with the given velocities of their ends.
   std::pair<MovingSegment, MovingSegment> meeting(const Vec3 &u, const Vec3 &v, const Vec3 &gap, const double t,
                                                   const std::array<Vec3, 4> &velocity)

@@ -48,7 +48,8 @@ void check_end_of_approach(const Pair &pair, const Contact &c, const double radi
   ASSERT_LE(c.closest_time, t1);
   const double at = d(c.closest_time), h = 2e-6 * duration;
   EXPECT_LE(at, d(c.time) + 1e-9 * radius);
-  // The minimum is found to 1e-7 of the interval, in which d changes no faster than the fastest relative motion of ends.
+  // The minimum is found to 1e-7 of the interval, in which d changes no faster than the fastest relative motion of
+  // ends.
   double travel = 0;
   for (const Vec3 &v : {pair.first.start_velocity, pair.first.end_velocity})
     for (const Vec3 &w : {pair.second.start_velocity, pair.second.end_velocity})

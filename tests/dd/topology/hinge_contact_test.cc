@@ -38,8 +38,8 @@ struct Hinge
   }
 };
 
-/// Steps that are so short that neither the distance can fall below the level by more than the slack, nor the angle turn
-/// acute or obtuse for more than a moment. Returns the time, or -1, and the level that holds there.
+/// Steps that are so short that neither the distance can fall below the level by more than the slack, nor the angle
+/// turn acute or obtuse for more than a moment. Returns the time, or -1, and the level that holds there.
 std::pair<Real, Real> first_hinge(const Hinge &h, const Real radius, const Real t0, const Real t1, const Real depth)
 {
   constexpr Real moment = 1e-7L;
@@ -80,8 +80,8 @@ std::pair<Real, Real> first_hinge(const Hinge &h, const Real radius, const Real 
 
 Hinge random_hinge(RandomPairs &r)
 {
-  // Near each other at time t: the end of one arm is off a point of the other arm by a few radii. Then one, two or three
-  // dimensions of motion, arms down to a tenth of the radius, all angles.
+  // Near each other at time t: the end of one arm is off a point of the other arm by a few radii. Then one, two or
+  // three dimensions of motion, arms down to a tenth of the radius, all angles.
   const double t = r.uniform(-0.1, 1.2);
   const Vec3 n = r.direction();
   const bool flat = r.uniform(0, 1) < 0.4;
@@ -160,8 +160,8 @@ TEST(HingeContact, DoesNotCountArmsThatFoldBackwardsOrOpen)
 
 TEST(HingeContact, ThatTurnsAcuteWithinTheRadiusMustComeNearerFromThere)
 {
-  // A short arm whose end passes from behind the node to above the long arm, at the height 0.5, acute from t = 0.5. It is
-  // 0.5 from the long arm then, and falls only if it also sinks.
+  // A short arm whose end passes from behind the node to above the long arm, at the height 0.5, acute from t = 0.5.
+  // It is 0.5 from the long arm then, and falls only if it also sinks.
   const MovingSegment longer = arm(Vec3(40, 0, 0), Vec3::Zero());
   EXPECT_FALSE(first_hinge_contact(arm(Vec3(-5, 0.5, 0), Vec3(10, 0, 0)), longer, 1, 0, 1));
   const auto c = first_hinge_contact(arm(Vec3(-5, 0.6, 0), Vec3(10, -0.2, 0)), longer, 1, 0, 1);
