@@ -291,6 +291,7 @@ std::vector<CandidatePair> CandidateList::pairs_of_inserted(const Network &netwo
                                                             std::size_t &tests) const
 {
   std::vector<SegmentIndex> others;
+  SphereGrid::Memory memory;
   const auto take = [&](SegmentIndex t, std::uint32_t number)
   {
     // Of two segments entered together, the later one finds the other.
@@ -299,7 +300,8 @@ std::vector<CandidatePair> CandidateList::pairs_of_inserted(const Network &netwo
   };
   for (const Sphere &sphere : spheres_of(network, s))
   {
-    tests += grid_.near(sphere.centre, sphere.radius + radius_, [&](std::uint32_t i) { take(grid_.segment(i), 0); });
+    tests +=
+        grid_.near(sphere.centre, sphere.radius + radius_, memory, [&](std::uint32_t i) { take(grid_.segment(i), 0); });
     tests += inserted_.near(sphere.centre, sphere.radius + radius_, take);
   }
   std::ranges::sort(others);
@@ -348,7 +350,8 @@ void CandidateList::neighbours(const Network &network, const Vec3 &centre, doubl
     if (is_current(network, s, number))
       found.push_back(s);
   };
-  grid_.near(centre, reach, [&](std::uint32_t i) { take(grid_.segment(i), 0); });
+  SphereGrid::Memory memory;
+  grid_.near(centre, reach, memory, [&](std::uint32_t i) { take(grid_.segment(i), 0); });
   inserted_.near(centre, reach, take);
   in_step_.near(centre, reach,
                 [&](SegmentIndex s, std::uint32_t)

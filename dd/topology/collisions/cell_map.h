@@ -57,17 +57,13 @@ public:
     return x * x + y * y + z * z;
   }
 
-  /// f(key) for every cell that has a corner in common with @p c, itself included, each once.
-  template <class F> void for_each_neighbour(const Cell &c, F &&f) const
+  /// f(key) for half of the cells that have a corner in common with @p c: of every two such cells, one visits the other.
+  template <class F> void for_each_later_neighbour(const Cell &c, F &&f) const
   {
-    std::array<std::array<std::uint64_t, 3>, 3> bits{};
-    std::array<int, 3> count{};
-    for (int d = 0; d < 3; ++d)
-      count[d] = with_neighbours(d, c[d], bits[d]);
-    for (int i = 0; i < count[0]; ++i)
-      for (int j = 0; j < count[1]; ++j)
-        for (int k = 0; k < count[2]; ++k)
-          f(bits[0][i] | bits[1][j] | bits[2][k]);
+    const std::array<Steps, 3> steps{steps_along(0, c[0]), steps_along(1, c[1]), steps_along(2, c[2])};
+    for (const auto &[i, j, k] : later_steps)
+      if (steps[0].exists[i] && steps[1].exists[j] && steps[2].exists[k])
+        f(steps[0].bits[i] | steps[1].bits[j] | steps[2].bits[k]);
   }
 
   /// Cells that a cube about a point touches: coordinate (first + k) mod n for k < count along each axis.
@@ -91,20 +87,34 @@ public:
   unsigned key_bits() const;
 
 private:
-  /// Bits that coordinate @p c along @p axis and those of the cells on both sides, each once, have in the Morton index;
-  /// returns how many.
-  int with_neighbours(int axis, std::uint32_t c, std::array<std::uint64_t, 3> &found) const
+  /// Of the 27 steps in a cube (0 back, 1 none, 2 on), those that come after the one that goes nowhere.
+  static constexpr std::array<std::array<std::uint8_t, 3>, 13> later_steps{{{1, 1, 2},
+                                                                            {1, 2, 0},
+                                                                            {1, 2, 1},
+                                                                            {1, 2, 2},
+                                                                            {2, 0, 0},
+                                                                            {2, 0, 1},
+                                                                            {2, 0, 2},
+                                                                            {2, 1, 0},
+                                                                            {2, 1, 1},
+                                                                            {2, 1, 2},
+                                                                            {2, 2, 0},
+                                                                            {2, 2, 1},
+                                                                            {2, 2, 2}}};
+
+  /// One cell back, none, and one on along an axis: what the coordinate contributes to the Morton index.
+  struct Steps
+  {
+    std::array<std::uint64_t, 3> bits;
+    std::array<bool, 3> exists;
+  };
+  Steps steps_along(int axis, std::uint32_t c) const
   {
     const std::uint32_t last = n_[axis] - 1;
-    const bool closed = periodic_[axis] && last > 1; // with two cells the neighbours on both sides are one
+    const bool closed = periodic_[axis] && last > 1; // two cells have only one step between them
     const auto bits = [axis](std::uint32_t k) { return spread_bits(k) << axis; };
-    int count = 0;
-    found[count++] = bits(c);
-    if (c < last || closed)
-      found[count++] = bits(c < last ? c + 1 : 0);
-    if (c > 0 || closed)
-      found[count++] = bits(c > 0 ? c - 1 : last);
-    return count;
+    return {{bits(c > 0 ? c - 1 : last), bits(c), bits(c < last ? c + 1 : 0)},
+            {c > 0 || closed, true, c < last || closed}};
   }
 
   /// Distance along an axis of two wrapped coordinates that differ by @p d; the period is infinite along free axes.

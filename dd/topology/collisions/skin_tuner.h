@@ -17,8 +17,8 @@ class SkinTuner
 {
 public:
   /// Costs in ns of one core, measured (docs/benchmarks.md); only their ratios matter.
-  static constexpr double build_cost = 200; ///< per segment: references, spheres, sorting
-  static constexpr double test_cost = 3;    ///< per pair of spheres compared
+  static constexpr double build_cost = 300; ///< per segment: references, spheres, sorting
+  static constexpr double test_cost = 1.5;   ///< per pair of spheres compared
   static constexpr double pair_cost = 60;   ///< per pair and step: exact detection
   /// A list is made for drifts this much larger than expected.
   static constexpr double safety = 1.05;

@@ -114,7 +114,7 @@ void SphereGrid::add_cell(std::uint64_t key, std::uint32_t first_sphere)
 void SphereGrid::make_table()
 {
   const std::size_t slots = std::bit_ceil(2 * blocks_.size());
-  table_shift_ = 64U - static_cast<unsigned>(std::bit_width(slots - 1));
+  table_bits_ = static_cast<unsigned>(std::bit_width(slots - 1));
   table_.assign(slots, none);
   for (std::size_t b = 0; b < n_blocks(); ++b)
   {
@@ -135,7 +135,7 @@ double SphereGrid::nearest_gap(std::uint32_t i, std::uint32_t j) const
   const auto precedes = [&](std::uint32_t a, std::uint32_t b)
   {
     const double other = gap(a, b);
-    return other < own || (other == own && std::pair(std::min(a, b), std::max(a, b)) < std::pair(i, j));
+    return other < own || (other == own && std::minmax(a, b) < std::minmax(i, j));
   };
   return precedes(i, l) || precedes(k, j) || precedes(k, l) ? NAN : own;
 }
@@ -145,16 +145,5 @@ std::uint32_t SphereGrid::find_block(std::uint64_t key) const
   for (std::size_t slot = first_slot(key);; slot = (slot + 1) & (table_.size() - 1))
     if (table_[slot] == none || blocks_[table_[slot]].key == key)
       return table_[slot];
-}
-
-std::uint32_t SphereGrid::find_block(std::uint64_t key, Memory &memory) const
-{
-  const std::size_t slot = key & 63U; // neighbouring blocks differ in the lowest bits of their coordinates
-  if (memory.key_[slot] != key)
-  {
-    memory.key_[slot] = key;
-    memory.block_[slot] = find_block(key);
-  }
-  return memory.block_[slot];
 }
 } // namespace ddfem

@@ -20,6 +20,14 @@ struct Sphere
   SegmentIndex segment;
 };
 
+/// Hash value of @p bits bits that keeps the last @p near bits of a Morton index: cells near each other stay near each
+/// other in memory. The others are multiplied by 2^64 over the golden ratio (Knuth, TAOCP 3, section 6.4).
+inline std::size_t hash_of_neighbourhood(std::uint64_t key, unsigned near, unsigned bits)
+{
+  const std::uint64_t far = (key >> near) * 0x9e3779b97f4a7c15U >> 32U;
+  return (far << near | (key & ((std::uint64_t(1) << near) - 1))) & ((std::uint64_t(1) << bits) - 1);
+}
+
 /// Spheres sorted along the Morton curve of their cells, two per segment. Occupied cells are kept in blocks of 4 x 4 x 4,
 /// consecutive on the curve, with a bit per cell; the blocks are found by hashing. Neighbouring cells are so found with
 /// few visits to the table, and memory is proportional to the number of spheres however empty the space is.
@@ -53,12 +61,12 @@ public:
     std::array<std::uint32_t, 64> block_{};
   };
 
-  /// f(i, j) for every two spheres whose surfaces are no farther apart than @p gap (nm), the one nearer to the start of
-  /// the curve in the block @p block. All blocks together give every pair once. Returns the number of tests.
+  /// f(i, j) for every two spheres whose surfaces are no farther apart than @p gap (nm), the first of them in the block
+  /// @p block. All blocks together give every pair once. Returns the number of tests.
   template <class F> std::size_t pairs_of_block(std::size_t block, double gap, Memory &memory, F &&f) const;
 
   /// f(i) for every sphere whose surface is no farther than @p reach (nm) from the point @p x.
-  template <class F> std::size_t near(const Vec3 &x, double reach, F &&f) const;
+  template <class F> std::size_t near(const Vec3 &x, double reach, Memory &memory, F &&f) const;
 
 private:
   struct Block
@@ -73,9 +81,18 @@ private:
   /// Of the next occupied cell on the curve.
   void add_cell(std::uint64_t key, std::uint32_t first_sphere);
   void make_table();
-  std::size_t first_slot(std::uint64_t key) const { return key * 0x9e3779b97f4a7c15U >> table_shift_; }
+  std::size_t first_slot(std::uint64_t key) const { return hash_of_neighbourhood(key, 3, table_bits_); }
   std::uint32_t find_block(std::uint64_t key) const;
-  std::uint32_t find_block(std::uint64_t key, Memory &memory) const;
+  std::uint32_t find_block(std::uint64_t key, Memory &memory) const
+  {
+    const std::size_t slot = key & 63U; // neighbouring blocks differ in the lowest bits of their coordinates
+    if (memory.key_[slot] != key)
+    {
+      memory.key_[slot] = key;
+      memory.block_[slot] = find_block(key);
+    }
+    return memory.block_[slot];
+  }
   /// Number of the occupied cell @p key of a block; none if it is empty.
   std::uint32_t cell_of(std::uint32_t block, std::uint64_t key) const
   {
@@ -110,7 +127,7 @@ private:
   std::vector<std::uint32_t> cells_; ///< first sphere of each occupied cell, and the number of spheres
   std::vector<Block> blocks_{1};     ///< in the order of the curve, and one more that ends the last
   std::vector<std::uint32_t> table_; ///< open addressing: numbers of blocks
-  unsigned table_shift_ = 63;
+  unsigned table_bits_ = 1;
 };
 
 template <class F> std::size_t SphereGrid::pairs_of_block(std::size_t block, double gap, Memory &memory, F &&f) const
@@ -123,13 +140,10 @@ template <class F> std::size_t SphereGrid::pairs_of_block(std::size_t block, dou
     for (std::uint32_t i = begin; i < end; ++i)
       test(i, i + 1, end, gap, tests, f);
     const CellMap::Cell own = map_.cell({x_[begin], y_[begin], z_[begin]});
-    const std::uint64_t own_key = morton_index(own[0], own[1], own[2]);
-    map_.for_each_neighbour(
+    map_.for_each_later_neighbour(
         own,
         [&](std::uint64_t key)
         {
-          if (key <= own_key)
-            return;
           const std::uint64_t key_of_block = key >> block_bits;
           const std::uint32_t other = cell_of(
               key_of_block == own_block ? static_cast<std::uint32_t>(block) : find_block(key_of_block, memory), key);
@@ -142,7 +156,7 @@ template <class F> std::size_t SphereGrid::pairs_of_block(std::size_t block, dou
   return tests;
 }
 
-template <class F> std::size_t SphereGrid::near(const Vec3 &x, double reach, F &&f) const
+template <class F> std::size_t SphereGrid::near(const Vec3 &x, double reach, Memory &memory, F &&f) const
 {
   if (size() == 0)
     return 0;
@@ -165,7 +179,7 @@ template <class F> std::size_t SphereGrid::near(const Vec3 &x, double reach, F &
     map_.for_each_key(range,
                       [&](std::uint64_t key)
                       {
-                        const std::uint32_t c = cell_of(find_block(key >> block_bits), key);
+                        const std::uint32_t c = cell_of(find_block(key >> block_bits, memory), key);
                         if (c != none)
                           test_range(cells_[c], cells_[c + 1]);
                       });

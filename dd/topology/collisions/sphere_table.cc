@@ -14,8 +14,8 @@ void SphereTable::reset(const CellMap &map)
 
 void SphereTable::add(const Sphere &sphere, std::uint32_t number)
 {
-  if (entries_.size() == chains_.size())
-    make_chains(65 - shift_);
+  if (4 * entries_.size() >= chains_.size()) // most cells asked for are empty: short chains
+    make_chains(bits_ + 2);
   const Vec3 centre = map_.wrapped(sphere.centre);
   const std::uint64_t key = map_.key(centre);
   std::uint32_t &chain = chains_[chain_of(key)];
@@ -26,7 +26,7 @@ void SphereTable::add(const Sphere &sphere, std::uint32_t number)
 
 void SphereTable::make_chains(unsigned bits)
 {
-  shift_ = 64 - bits;
+  bits_ = bits;
   chains_.assign(std::size_t(1) << bits, none);
   for (std::uint32_t k = 0; k < entries_.size(); ++k)
   {

@@ -31,14 +31,14 @@ private:
   };
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  std::size_t chain_of(std::uint64_t key) const { return key * 0x9e3779b97f4a7c15U >> shift_; }
+  std::size_t chain_of(std::uint64_t key) const { return hash_of_neighbourhood(key, 6, bits_); }
   void make_chains(unsigned bits);
 
   CellMap map_;
   double largest_ = 0; ///< radius, nm
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> chains_; ///< newest entry of each
-  unsigned shift_ = 64;               ///< less the binary logarithm of their number
+  unsigned bits_ = 0;                 ///< binary logarithm of their number
 };
 
 template <class F> std::size_t SphereTable::near(const Vec3 &x, double reach, F &&f) const
