@@ -54,6 +54,14 @@ template <class T> std::vector<T> joined(const std::vector<std::vector<T>> &part
   return all;
 }
 
+/// Sorts the entries from the given one on and leaves each once.
+void remove_duplicates(std::vector<SegmentIndex> &segments, std::ptrdiff_t from)
+{
+  const auto begin = segments.begin() + from;
+  std::ranges::sort(begin, segments.end(), {}, &SegmentIndex::value);
+  segments.erase(std::unique(begin, segments.end()), segments.end());
+}
+
 struct ById
 {
   const Network &network;
@@ -99,14 +107,12 @@ void CandidateList::update(const Network &network, std::span<const Vec3> displac
   }
   const std::vector<NodeIndex> moved = nodes_out_of_reach(network, displacement);
   const std::span<const SegmentIndex> live = network.segments();
-  const auto born =
-      std::ranges::lower_bound(live, SegmentIndex{static_cast<std::uint32_t>(number_.size())}, {}, std::identity());
+  const auto born = std::ranges::lower_bound(live, number_.size(), {}, &SegmentIndex::value);
   std::vector<SegmentIndex> fresh(born, live.end());
   const std::size_t n_born = fresh.size();
   for (const NodeIndex i : moved)
     fresh.insert(fresh.end(), network.connected_segments(i).begin(), network.connected_segments(i).end());
-  std::ranges::sort(fresh);
-  fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
+  remove_duplicates(fresh, 0);
   if (inserted_.size() / 2 + fresh.size() > std::max(least_inserted, live.size() / one_in_inserted))
     return rebuild(network, displacement, radius, fresh.size() > 2 * n_born);
 
@@ -304,9 +310,9 @@ std::vector<CandidatePair> CandidateList::pairs_of_inserted(const Network &netwo
         grid_.near(sphere.centre, sphere.radius + radius_, memory, [&](std::uint32_t i) { take(grid_.segment(i), 0); });
     tests += inserted_.near(sphere.centre, sphere.radius + radius_, take);
   }
-  std::ranges::sort(others);
-  others.erase(std::unique(others.begin(), others.end()), others.end());
+  remove_duplicates(others, 0);
   std::vector<CandidatePair> pairs;
+  pairs.reserve(others.size());
   for (const SegmentIndex t : others)
     pairs.push_back(ordered(network, s, t));
   return pairs;
@@ -359,8 +365,7 @@ void CandidateList::neighbours(const Network &network, const Vec3 &centre, doubl
                   if (network.contains(s))
                     found.push_back(s);
                 });
-  std::sort(found.begin() + old_size, found.end());
-  found.erase(std::unique(found.begin() + old_size, found.end()), found.end());
+  remove_duplicates(found, old_size);
 }
 
 void CandidateList::insert_in_step(const Network &, SegmentIndex s, const Vec3 &centre, double ball_radius)

@@ -53,6 +53,6 @@ CellMap::Range CellMap::around(const Vec3 &x, double reach) const
 
 unsigned CellMap::key_bits() const
 {
-  return 3U * static_cast<unsigned>(std::bit_width(std::max({n_[0], n_[1], n_[2]}) - 1U));
+  return 3U * static_cast<unsigned>(std::bit_width(n_.maxCoeff() - 1U));
 }
 } // namespace ddfem

@@ -18,7 +18,7 @@ namespace ddfem
 class CellMap
 {
 public:
-  using Cell = std::array<std::uint32_t, 3>;
+  using Cell = Eigen::Array<std::uint32_t, 3, 1>;
 
   CellMap() = default;
   /// Cells at least @p width (nm) wide around points in the box [lower, upper]; wider where the Morton index could not
@@ -38,7 +38,7 @@ public:
   /// Cell of a wrapped point.
   Cell cell(const Vec3 &x) const
   {
-    Cell c{};
+    Cell c;
     for (int d = 0; d < 3; ++d)
       c[d] = static_cast<std::uint32_t>(std::clamp((x[d] - origin_[d]) * per_width_[d], 0.0, n_[d] - 1.0));
     return c;
@@ -69,7 +69,7 @@ public:
   /// Cells that a cube about a point touches: coordinate (first + k) mod n for k < count along each axis.
   struct Range
   {
-    std::array<std::uint32_t, 3> first{}, count{};
+    Cell first, count;
     double n_cells() const { return 1.0 * count[0] * count[1] * count[2]; }
   };
   /// Those of the cube of half width @p reach (nm) about the wrapped point @p x.
@@ -125,7 +125,7 @@ private:
   }
 
   Vec3 origin_ = Vec3::Zero(), period_ = Vec3::Constant(INFINITY), per_width_ = Vec3::Zero();
-  std::array<bool, 3> periodic_{};
-  std::array<std::uint32_t, 3> n_{1, 1, 1};
+  Eigen::Array<bool, 3, 1> periodic_ = Eigen::Array<bool, 3, 1>::Constant(false);
+  Cell n_ = Cell::Ones();
 };
 } // namespace ddfem

@@ -1,125 +1,19 @@
 // Candidate pairs against all pairs, over many steps of random motion and random edits.
 #include "dd/elasticity/distance.h"
 #include "dd/topology/collisions/candidate_list.h"
+#include "tests/dd/topology/random_lines.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
 #include <algorithm>
-#include <random>
+#include <cmath>
 #include <set>
 
 namespace
 {
 using namespace ddfem;
 using IndexPair = std::pair<std::uint32_t, std::uint32_t>;
-
-/// A network of random walks, with random motion and edits.
-class Sample
-{
-public:
-  Network network;
-  std::vector<Vec3> displacement;
-
-  Sample(unsigned seed, std::size_t n_lines, std::size_t n_per_line, double box, const Vec3 &period)
-      : random_(seed), longest_(period.isZero() ? 80 : 25)
-  {
-    network.set_period(period);
-    for (std::size_t l = 0; l < n_lines; ++l)
-    {
-      Vec3 x = 0.5 * box * (Vec3::Ones() + vector(1));
-      NodeIndex last = network.insert({image(x)});
-      Vec3 direction = vector(1).normalized();
-      for (std::size_t k = 0; k < n_per_line; ++k)
-      {
-        direction = (direction + 0.4 * vector(1)).normalized();
-        x += uniform(5, 20) * direction;
-        const NodeIndex next = network.insert({image(x)});
-        network.insert(Segment{last, next, Vec3::UnitX(), {}});
-        last = next;
-      }
-    }
-  }
-
-  double uniform(double a, double b) { return std::uniform_real_distribution<double>(a, b)(random_); }
-  Vec3 vector(double r) { return {uniform(-r, r), uniform(-r, r), uniform(-r, r)}; }
-  std::size_t pick(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random_); }
-  SegmentIndex any_segment() { return network.segments()[pick(network.n_segments())]; }
-
-  /// Some image of @p x, up to five periods away.
-  Vec3 image(const Vec3 &x)
-  {
-    Vec3 y = x;
-    for (int d = 0; d < 3; ++d)
-      y[d] += (static_cast<double>(pick(11)) - 5) * network.period()[d];
-    return y;
-  }
-
-  /// Random displacements of up to @p size; one in @p rare of ten times as much.
-  void draw_motion(double size, std::size_t rare)
-  {
-    displacement.assign(network.node_capacity(), Vec3::Zero());
-    for (Vec3 &d : displacement)
-      d = vector(pick(rare) == 0 ? 10 * size : size);
-  }
-
-  void move()
-  {
-    for (const NodeIndex i : network.nodes())
-      network.set_position(i, network.position(i) + displacement[i.value]);
-  }
-
-  SegmentIndex split(SegmentIndex s)
-  {
-    const Segment old = network[s];
-    const NodeIndex middle = network.insert({network.position(old.start) + 0.5 * network.direction(s)});
-    network.erase(s);
-    network.insert(Segment{old.start, middle, old.burgers, old.plane});
-    return network.insert(Segment{middle, old.end, old.burgers, old.plane});
-  }
-
-  void edit()
-  {
-    const std::vector<SegmentIndex> all(network.segments().begin(), network.segments().end());
-    for (const SegmentIndex s : all)
-      if (network.length(s) > longest_)
-        network.erase(s);
-    for (std::size_t n = pick(4); n > 0; --n)
-      network.erase(any_segment());
-    for (std::size_t n = pick(4); n > 0; --n)
-      split(any_segment());
-    for (std::size_t n = pick(4); n > 0; --n)
-    {
-      const NodeIndex end = network.nodes()[pick(network.n_nodes())];
-      const NodeIndex start = network.insert({image(network.position(end) + vector(8))});
-      network.insert(Segment{start, end, Vec3::UnitY(), {}});
-    }
-  }
-
-  /// Ends of a segment when its nodes have covered the given parts of their way.
-  std::pair<Vec3, Vec3> ends(SegmentIndex s, const std::vector<double> &part) const
-  {
-    const NodeIndex a = network.start(s), b = network.end(s);
-    const Vec3 x = network.position(a) + part[a.value] * displacement[a.value];
-    const Vec3 d = network.direction(s) + part[b.value] * displacement[b.value] - part[a.value] * displacement[a.value];
-    return {x, x + d};
-  }
-
-  static constexpr int n_moments = 5;
-  /// Moment @p k of n_moments: every node at the same part of its way, or each at another.
-  std::vector<double> parts(int k)
-  {
-    std::vector<double> part(network.node_capacity(), 0.5 * k);
-    if (k > 2)
-      for (double &p : part)
-        p = uniform(0, 1);
-    return part;
-  }
-
-private:
-  std::mt19937 random_;
-  double longest_; ///< well below half of the smallest period, nm
-};
 
 bool adjacent(const Network &network, SegmentIndex a, SegmentIndex b)
 {
@@ -128,12 +22,12 @@ bool adjacent(const Network &network, SegmentIndex a, SegmentIndex b)
 }
 
 /// All pairs that are within @p radius at some of the sampled moments of the step.
-std::set<IndexPair> pairs_within(Sample &sample, double radius)
+std::set<IndexPair> pairs_within(RandomLines &sample, double radius)
 {
   const Network &network = sample.network;
   const auto segments = network.segments();
   std::set<IndexPair> found;
-  for (int k = 0; k < Sample::n_moments; ++k)
+  for (int k = 0; k < RandomLines::n_moments; ++k)
   {
     const std::vector<double> part = sample.parts(k);
     std::vector<std::pair<Vec3, Vec3>> ends;
@@ -189,7 +83,7 @@ void expect_sound(const Network &network, const CandidateList &list, double fart
 }
 
 /// Asks for the neighbours of a random ball and compares with all segments, at sampled moments of the step.
-std::size_t expect_neighbours(Sample &sample, const CandidateList &list, const std::set<SegmentIndex> &unknown,
+std::size_t expect_neighbours(RandomLines &sample, const CandidateList &list, const std::set<SegmentIndex> &unknown,
                               double radius)
 {
   const Network &network = sample.network;
@@ -202,7 +96,7 @@ std::size_t expect_neighbours(Sample &sample, const CandidateList &list, const s
   EXPECT_EQ(neighbours.size(), found.size() - 1) << "a segment was returned twice";
   for (const SegmentIndex s : neighbours)
     EXPECT_TRUE(network.contains(s));
-  for (int k = 0; k < Sample::n_moments; ++k)
+  for (int k = 0; k < RandomLines::n_moments; ++k)
   {
     const std::vector<double> part = sample.parts(k);
     for (const SegmentIndex s : network.segments())
@@ -253,7 +147,7 @@ INSTANTIATE_TEST_SUITE_P(Cells, CandidateListCase,
 TEST_P(CandidateListCase, ContainsEveryPairThatMeetsInTheStep)
 {
   const Case &c = GetParam();
-  Sample sample(7, c.n_lines, 15, c.box, c.period);
+  RandomLines sample(7, c.n_lines, 15, c.box, c.period);
   CandidateList list;
   std::size_t n_met = 0;
   for (int step = 0; step < 50; ++step)
@@ -275,7 +169,7 @@ TEST_P(CandidateListCase, ContainsEveryPairThatMeetsInTheStep)
 TEST_P(CandidateListCase, IsTheSameForAnyNumberOfThreads)
 {
   const Case &c = GetParam();
-  Sample sample(11, c.n_lines, 15, c.box, c.period);
+  RandomLines sample(11, c.n_lines, 15, c.box, c.period);
   CandidateList one, two;
   for (int step = 0; step < 30; ++step)
   {
@@ -299,7 +193,7 @@ TEST_P(CandidateListCase, IsTheSameForAnyNumberOfThreads)
 TEST_P(CandidateListCase, NeighboursOfABallAreComplete)
 {
   const Case &c = GetParam();
-  Sample sample(13, c.n_lines, 15, c.box, c.period);
+  RandomLines sample(13, c.n_lines, 15, c.box, c.period);
   CandidateList list;
   std::size_t n_found = 0;
   for (int step = 0; step < 25; ++step)
@@ -339,14 +233,14 @@ TEST_P(CandidateListCase, NeighboursOfABallAreComplete)
 }
 
 /// All nodes move by @p d.
-void shift(Sample &sample, const Vec3 &d)
+void shift(RandomLines &sample, const Vec3 &d)
 {
   sample.displacement.assign(sample.network.node_capacity(), d);
 }
 
 TEST(CandidateList, IsRebuiltOnlyWhenNodesLeaveTheirSkin)
 {
-  Sample sample(3, 60, 20, 300, Vec3::Zero());
+  RandomLines sample(3, 60, 20, 300, Vec3::Zero());
   CandidateList list;
   list.update(sample.network, {}, 1);
   ASSERT_EQ(list.statistics().builds, 1U);
@@ -382,7 +276,7 @@ TEST(CandidateList, IsRebuiltOnlyWhenNodesLeaveTheirSkin)
 
 TEST(CandidateList, ServesAsManyStepsAsTheSkinIsWide)
 {
-  Sample sample(5, 100, 20, 400, Vec3::Zero());
+  RandomLines sample(5, 100, 20, 400, Vec3::Zero());
   const double d = 0.05;
   shift(sample, Vec3(0.6, 0.8, 0) * d);
   CandidateList list;
@@ -443,7 +337,7 @@ TEST(CandidateList, ChoosesASkinThatCostsLittleMoreThanTheBest)
 {
   for (const double d : {0.02, 0.1, 0.5})
   {
-    Sample sample(17, 150, 20, 350, Vec3::Zero());
+    RandomLines sample(17, 150, 20, 350, Vec3::Zero());
     sample.displacement.assign(sample.network.node_capacity(), Vec3::Zero());
     Vec3 direction = Vec3::UnitX();
     for (const NodeIndex i : sample.network.nodes()) // 21 nodes of a line after each other: lines move as they are
@@ -478,7 +372,7 @@ TEST(CandidateList, ChoosesASkinThatCostsLittleMoreThanTheBest)
 
 TEST(CandidateList, SaysWhichNodeHasNoFinitePosition)
 {
-  Sample sample(5, 3, 5, 100, Vec3::Zero());
+  RandomLines sample(5, 3, 5, 100, Vec3::Zero());
   sample.draw_motion(1, 10);
   sample.displacement[4][1] = NAN;
   CandidateList list;
