@@ -1,8 +1,8 @@
 #include "dd/crystal/material.h"
 
 #include "dd/common/units.h"
+#include "dd/crystal/burgers_vectors.h"
 
-#include <cmath>
 #include <stdexcept>
 
 namespace ddfem
@@ -19,17 +19,6 @@ constexpr const char *handbook_density =
 constexpr const char *handbook_elasticity =
     "Voigt average of the single-crystal constants of the CRC Handbook of Chemistry and Physics, 98th ed., table "
     "\"Elastic Constants of Single Crystals\"";
-
-double burgers_magnitude(Lattice lattice, double a)
-{
-  switch (lattice)
-  {
-    case Lattice::fcc: return a / std::sqrt(2.0);
-    case Lattice::bcc: return a * std::sqrt(3.0) / 2;
-    case Lattice::hcp: return a;
-  }
-  return a;
-}
 
 /// Units of this table: nm, GPa, Pa s, kg/m^3.
 Material make(const char *name, Lattice lattice, double a, std::optional<double> c,

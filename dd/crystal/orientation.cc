@@ -50,26 +50,28 @@ Miller smallest_orthogonal(const Miller &axis)
 }
 } // namespace
 
-Orientation Orientation::from_axes(SampleAxis axis_a, const Miller &a, SampleAxis axis_b, const Miller &b)
+Orientation Orientation::from_axes(SampleAxis axis_a, const Miller &a, SampleAxis axis_b, const Miller &b,
+                                   const UnitCell &cell)
 {
   require_direction(a);
   require_direction(b);
   if (axis_a == axis_b)
     throw std::invalid_argument("Two crystal directions are given for the same sample axis; name two different axes.");
-  if (dot(a, b) != 0)
+  const Vec3 unit_a = cell.direction(a).normalized(), unit_b = cell.direction(b).normalized();
+  if (!cell.orthogonal(a, b))
   {
-    const double angle = std::acos(to_vector(a).normalized().dot(to_vector(b).normalized())) * 180 / std::numbers::pi;
-    throw std::invalid_argument("The crystal directions [" + to_string(a) + "] and [" + to_string(b) +
-                                "] of two sample axes enclose " + std::to_string(angle) +
+    const double angle = std::acos(unit_a.dot(unit_b)) * 180 / std::numbers::pi;
+    throw std::invalid_argument("The crystal directions " + cell.direction_name(a) + " and " + cell.direction_name(b) +
+                                " of two sample axes enclose " + std::to_string(angle) +
                                 " degrees; they must be orthogonal.");
   }
   const int ia = index_of(axis_a), ib = index_of(axis_b), ic = 3 - ia - ib;
   Mat3 rotation;
-  rotation.row(ia) = to_vector(a).normalized();
-  rotation.row(ib) = to_vector(b).normalized();
+  rotation.row(ia) = unit_a;
+  rotation.row(ib) = unit_b;
   const Vec3 third = rotation.row(ia).cross(rotation.row(ib));
   rotation.row(ic) = (ib == (ia + 1) % 3 ? third : Vec3(-third)).normalized();
-  return Orientation(rotation);
+  return {rotation, cell};
 }
 
 Orientation Orientation::from_loading_axis(const Miller &direction, SampleAxis axis)
@@ -79,13 +81,13 @@ Orientation Orientation::from_loading_axis(const Miller &direction, SampleAxis a
   return from_axes(axis, direction, next, smallest_orthogonal(direction));
 }
 
-Orientation Orientation::from_rotation(const Mat3 &rotation)
+Orientation Orientation::from_rotation(const Mat3 &rotation, const UnitCell &cell)
 {
   constexpr double tolerance = 1e-9;
   if (!((rotation * rotation.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < tolerance) ||
       rotation.determinant() < 0)
     throw std::invalid_argument("The matrix given as crystal orientation is not a proper rotation: its rows must be "
                                 "orthonormal and its determinant +1.");
-  return Orientation(rotation);
+  return {rotation, cell};
 }
 } // namespace ddfem
