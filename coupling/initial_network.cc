@@ -1,8 +1,10 @@
 #include "coupling/initial_network.h"
 
 #include "coupling/input_error.h"
+#include "dd/crystal/product_plane.h"
 #include "dd/io/file_error.h"
 #include "dd/io/paradis_data.h"
+#include "dd/microstructure/adopt_slip_planes.h"
 
 #include <cmath>
 #include <sstream>
@@ -18,13 +20,24 @@ std::string in_metres(const Vec3 &x)
   return out.str();
 }
 
+/// Why a Burgers vector does not glide.
+std::string complaint(const SlipSystems &systems, const Vec3 &burgers)
+{
+  const std::string crystal = std::string(" of this ") + name_of(systems.lattice()) + " crystal";
+  const auto type = systems.burgers_type(burgers);
+  if (!type)
+    return "is no translation" + crystal;
+  return std::string("is ") + name_of(*type) + crystal + " and sessile";
+}
+
 Network read_network(const Parameters &p)
 {
   if (p.network_file.empty())
     return {};
   ParadisReadOptions options;
   options.burgers_magnitude = p.burgers_magnitude;
-  options.cubic_orientation = p.orientation;
+  if (p.lattice != Lattice::hcp)
+    options.cubic_orientation = p.orientation;
   options.periodic = p.mode == Mode::periodic;
   options.strict = true;
   try
@@ -34,6 +47,8 @@ Network read_network(const Parameters &p)
     if (p.mode == Mode::periodic && (edges - p.cell.lengths).norm() > 1e-6 * edges.norm())
       throw InputError(p.network_file + ": the periodic cell of the file has edges " + in_metres(edges) +
                        ", Domain/Size is " + in_metres(p.cell.lengths));
+    if (p.lattice == Lattice::hcp) // normals of a hexagonal crystal are no integers: compared with the slip planes
+      adopt_slip_planes(data.network, p.slip_systems());
     return std::move(data.network);
   }
   catch (const FileError &e)
@@ -45,18 +60,20 @@ Network read_network(const Parameters &p)
 
 Network build_network(const Parameters &p)
 {
+  const SlipSystems systems = p.slip_systems();
   Network network = read_network(p);
   if (p.mode == Mode::periodic)
     network.set_period(p.cell.lengths);
   for (const FrankReadSource &source : p.sources)
     add_frank_read_source(network, p.orientation, source, 0.75 * p.topology.max_segment);
   for (const PolygonLoop &loop : p.loops)
-    add_polygon_loop(network, p.orientation, loop, p.topology.max_segment);
-  const SlipSystems systems = p.slip_systems();
+    add_polygon_loop(network, systems, loop, p.topology.max_segment);
   for (const SegmentIndex s : network.segments())
     if (network.plane(s).is_valid() && systems.glissile_planes(network.burgers(s)).empty())
-      throw InputError("Microstructure: segment " + std::to_string(network.id(s)) + " has the Burgers vector " +
-                       in_metres(network.burgers(s)) + ", which is no a/2<110> of this crystal");
+      throw InputError("Microstructure: segment " + std::to_string(network.id(s)) +
+                       " has a glide plane but the Burgers vector " + in_metres(network.burgers(s)) + ", which " +
+                       complaint(systems, network.burgers(s)) +
+                       "; Burgers vectors that glide: " + systems.glissile_types());
   for (const NodeIndex i : network.nodes())
     if (p.mode != Mode::finite && network.constraint(i) == NodeConstraint::surface)
       throw InputError("Microstructure: node " + std::to_string(network.id(i)) +
@@ -93,13 +110,11 @@ ProductPlane product_plane_rule(const SlipSystems &systems)
 {
   return [systems](Network &network, const Vec3 &xi, const Vec3 &b, const Vec3 &point) -> PlaneIndex
   {
-    for (const std::size_t k : systems.glissile_planes(b))
-    {
-      const SlipPlane &plane = systems.planes()[k];
-      if (std::abs(plane.normal.dot(xi)) < 1e-4)
-        return network.planes().find_or_insert(plane.miller, plane.normal, point);
-    }
-    return {};
+    const auto k = product_plane(systems, xi, b);
+    if (!k)
+      return {};
+    const SlipPlane &plane = systems.planes()[*k];
+    return network.planes().find_or_insert(plane.miller, plane.normal, point);
   };
 }
 } // namespace ddfem::coupling

@@ -19,6 +19,7 @@ Network build_network(const Parameters &parameters);
 /// within 1e-3 of the grain's diameter of the surface are put onto it.
 void fit_into_grain(Network &network, const GrainShape &shape, double min_segment);
 
-/// Where a junction line glides: the {111} plane that holds both its direction and its Burgers vector, if there is one.
+/// Where a junction line glides: product_plane() of dd/crystal without parents, because topology does not hand over those of
+/// the lines that reacted.
 ProductPlane product_plane_rule(const SlipSystems &systems);
 } // namespace ddfem::coupling

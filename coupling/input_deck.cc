@@ -74,6 +74,7 @@ std::string allowed_values(const ParameterEntry &e)
       {"An integer n such that", "an integer n with"},
       {"<= n <= 2147483647", "<= n"},
       {"A list of 3 to 3 elements separated by < > where each element is ", "three of "},
+      {"A list of 3 to 4 elements separated by < > where each element is ", "three or four of "},
       {"A list of 6 to 6 elements separated by < > where each element is ", "six of "},
       {"Any one of", "one of"},
       {"A boolean value (true or false)", "true or false"},

@@ -36,10 +36,10 @@ std::shared_ptr<const Patterns::PatternBase> words()
 {
   return std::make_shared<Patterns::Anything>();
 }
-/// Miller indices.
+/// Miller indices; four for hexagonal crystals.
 std::shared_ptr<const Patterns::PatternBase> miller_indices()
 {
-  return std::make_shared<Patterns::List>(Patterns::Integer(-100, 100), 3, 3, " ");
+  return std::make_shared<Patterns::List>(Patterns::Integer(-100, 100), 3, 4, " ");
 }
 /// @p n numbers separated by blanks.
 std::shared_ptr<const Patterns::PatternBase> vector_of(const unsigned n)
@@ -55,12 +55,14 @@ void add_material(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Material";
   t.push_back({s, "Name", "aluminium", words(), "",
-               "Named material: aluminium, copper, nickel (sources of the numbers: docs/materials.md)."});
+               "Named material: aluminium, copper, nickel (fcc), iron, tungsten (bcc), zirconium (hcp); sources of the "
+               "numbers: "
+               "docs/materials.md."});
   t.push_back(
       {s, "Shear modulus", "0", not_negative(), "Pa", "Isotropic shear modulus; 0: that of the named material."});
   t.push_back({s, "Poisson ratio", "0", between(0, 0.4999), "", "Poisson's ratio; 0: that of the named material."});
   t.push_back(
-      {s, "Lattice parameter", "0", not_negative(), "m", "Cubic lattice parameter; 0: that of the named material."});
+      {s, "Lattice parameter", "0", not_negative(), "m", "Lattice parameter a; 0: that of the named material."});
   t.push_back({s, "Core radius", "0", not_negative(), "m",
                "Core radius a of the non-singular theory (Cai et al., JMPS 54 (2006) 561); 0: one Burgers vector."});
   t.push_back(
@@ -72,10 +74,16 @@ void add_material(std::vector<ParameterEntry> &t)
 void add_crystal(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Crystal";
-  t.push_back({s, "Direction along x", "1 0 0", miller_indices(), "",
-               "Miller indices of the crystal direction along the sample axis x; orthogonal to that along z."});
+  t.push_back(
+      {s, "Direction along x", "1 0 0", miller_indices(), "",
+       "Crystal direction along the sample axis x; orthogonal to that along z. Three Miller indices [u v w], or four "
+       "[u v t w] for an hcp crystal, where 1 0 0 is 2 -1 -1 0."});
   t.push_back({s, "Direction along z", "0 0 1", miller_indices(), "",
-               "Miller indices of the crystal direction along the sample axis z."});
+               "Crystal direction along the sample axis z, in the same way; 0 0 1 is the c axis of an hcp crystal."});
+  t.push_back(
+      {s, "c over a", "0", not_negative(), "", "Axial ratio of an hcp crystal; 0: that of the named material."});
+  t.push_back({s, "Slip on 123 planes", "false", yes_no(), "",
+               "Let lines of a bcc crystal glide on {123} besides {110} and {112}."});
 }
 
 void add_mobility(std::vector<ParameterEntry> &t)
@@ -155,16 +163,21 @@ void add_loading(std::vector<ParameterEntry> &t)
 void add_microstructure(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Microstructure";
-  t.push_back(
-      {s, "Frank-Read sources", "", words(), "",
-       "Sources separated by ';', each as 'plane / Burgers direction / centre / length / character': Miller indices, "
-       "sample coordinates in m, length in m, angle between line and Burgers vector in degrees (0 screw, 90 edge). "
-       "Example: 1 1 1 / -1 0 1 / 0 0 5e-7 / 2e-7 / 90."});
+  t.push_back({s, "Frank-Read sources", "", words(), "",
+               "Sources separated by ';', each as 'plane / Burgers direction / centre / length / character': Miller "
+               "indices (three, "
+               "or four in an hcp crystal), sample coordinates in m, length in m, angle between line and Burgers "
+               "vector in degrees "
+               "(0 screw, 90 edge). The Burgers vector is the shortest lattice translation along its direction. "
+               "Example: 1 1 1 / -1 0 1 / 0 0 5e-7 / 2e-7 / 90."});
   t.push_back(
       {s, "Loops", "", words(), "",
        "Closed loops separated by ';', each as 'plane / Burgers direction / centre / radius / corners': regular "
-       "polygons in the given plane. A Burgers vector out of the plane makes a prismatic loop, whose sides glide on "
-       "the planes of its prism. Example: 1 1 1 / -1 0 1 / 0 0 5e-7 / 1e-7 / 24."});
+       "polygons in the given plane. A Burgers vector out of the plane makes a prismatic loop: a side glides if a slip "
+       "plane "
+       "holds it and the Burgers vector, and is sessile otherwise; with 0 corners all sides lie on slip planes and "
+       "touch "
+       "the circle of the radius. Example: 1 1 1 / -1 0 1 / 0 0 5e-7 / 1e-7 / 24."});
   t.push_back({s, "Network file", "", words(), "",
                "ParaDiS .data file (version 4), lengths in Burgers vectors; added to the sources and loops."});
 }

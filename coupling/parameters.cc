@@ -3,7 +3,9 @@
 #include "coupling/input_error.h"
 #include "dd/common/units.h"
 #include "dd/crystal/material.h"
+#include "dd/crystal/miller_bravais.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -29,14 +31,35 @@ double number_or(const InputDeck &deck, const std::string &path, const double un
   return value > 0 ? value * unit : fallback;
 }
 
-Miller read_miller(const InputDeck &deck, const std::string &path, const std::string &text)
+enum class IndicesOf
+{
+  plane,
+  direction
+};
+
+/// Three indices, or for a hexagonal cell three or four (Miller-Bravais), which are turned into three.
+Miller read_miller(const InputDeck &deck, const std::string &path, const std::string &text, const IndicesOf what,
+                   const Lattice lattice)
 {
   std::istringstream in(text);
-  Miller m{};
-  std::string rest;
-  if (!(in >> m[0] >> m[1] >> m[2]) || (in >> rest) || is_zero(m))
-    deck.reject(path, "'" + text + "' must be three integer Miller indices, not all zero");
-  return m;
+  std::vector<int> m;
+  for (int index = 0; in >> index;)
+    m.push_back(index);
+  const bool four = lattice == Lattice::hcp && m.size() == 4;
+  if (!in.eof() || !(m.size() == 3 || four) || std::ranges::all_of(m, [](const int index) { return index == 0; }))
+    deck.reject(path, "'" + text + "' must be three " + (lattice == Lattice::hcp ? "or four " : "") +
+                          "integer Miller indices of the " + name_of(lattice) + " crystal, not all zero");
+  if (!four)
+    return {m[0], m[1], m[2]};
+  try
+  {
+    const MillerBravais indices = {m[0], m[1], m[2], m[3]};
+    return what == IndicesOf::plane ? plane_from_four_indices(indices) : direction_from_four_indices(indices);
+  }
+  catch (const std::invalid_argument &e)
+  {
+    deck.reject(path, e.what());
+  }
 }
 
 void read_material(const InputDeck &deck, Parameters &p)
@@ -50,12 +73,11 @@ void read_material(const InputDeck &deck, Parameters &p)
   {
     deck.reject("Material/Name", e.what());
   }
-  if (material->lattice != Lattice::fcc)
-    deck.reject("Material/Name", std::string("is ") + name_of(material->lattice) + "; allowed are fcc materials");
+  p.lattice = material->lattice;
   p.medium.mu = number_or(deck, "Material/Shear modulus", units::pascal, material->mu);
   p.medium.nu = number_or(deck, "Material/Poisson ratio", 1, material->nu);
   p.lattice_parameter = number_or(deck, "Material/Lattice parameter", units::metre, material->lattice_parameter);
-  p.burgers_magnitude = p.lattice_parameter / std::sqrt(2.0);
+  p.burgers_magnitude = burgers_magnitude(p.lattice, p.lattice_parameter);
   p.medium.a = number_or(deck, "Material/Core radius", units::metre, p.burgers_magnitude);
   p.core_cutoff_radius = number_or(deck, "Material/Core cutoff radius", units::metre, p.medium.a);
   p.mobility.drag_edge = number_or(deck, "Mobility/Edge drag", units::pascal_second, material->drag);
@@ -63,13 +85,41 @@ void read_material(const InputDeck &deck, Parameters &p)
   p.pair_tolerance = deck.number("Forces/Pair tolerance");
 }
 
-void read_orientation(const InputDeck &deck, Parameters &p)
+/// The cell of the named material, with c/a of the input if given.
+UnitCell read_cell(const InputDeck &deck, const Lattice lattice)
 {
-  const Miller x = read_miller(deck, "Crystal/Direction along x", deck.text("Crystal/Direction along x"));
-  const Miller z = read_miller(deck, "Crystal/Direction along z", deck.text("Crystal/Direction along z"));
+  const std::string path = "Crystal/c over a";
+  const double given = deck.number(path);
+  if (lattice != Lattice::hcp)
+  {
+    if (given != 0)
+      deck.reject(path,
+                  std::string("an ") + name_of(lattice) + " crystal is cubic; only hcp crystals have a ratio c/a");
+    return {};
+  }
   try
   {
-    p.orientation = Orientation::from_axes(SampleAxis::x, x, SampleAxis::z, z);
+    return UnitCell::hexagonal(number_or(deck, path, 1, find_material(deck.text("Material/Name")).c_over_a.value()));
+  }
+  catch (const std::invalid_argument &e)
+  {
+    deck.reject(path, e.what());
+  }
+}
+
+void read_crystal(const InputDeck &deck, Parameters &p)
+{
+  p.slip.bcc_123_planes = deck.flag("Crystal/Slip on 123 planes");
+  if (p.slip.bcc_123_planes && p.lattice != Lattice::bcc)
+    deck.reject("Crystal/Slip on 123 planes",
+                std::string("allowed are bcc crystals; this one is ") + name_of(p.lattice));
+  const auto direction = [&](const std::string &path)
+  { return read_miller(deck, path, deck.text(path), IndicesOf::direction, p.lattice); };
+  const Miller x = direction("Crystal/Direction along x"), z = direction("Crystal/Direction along z");
+  const UnitCell cell = read_cell(deck, p.lattice);
+  try
+  {
+    p.orientation = Orientation::from_axes(SampleAxis::x, x, SampleAxis::z, z, cell);
   }
   catch (const std::invalid_argument &e)
   {
@@ -169,30 +219,57 @@ std::vector<double> field_numbers(const InputDeck &deck, const std::string &path
   return result;
 }
 
-/// Burgers vector a/2 <110>-like along @p direction; must be one of the crystal and, if @p in_plane, glide in @p plane.
-Vec3 read_burgers(const InputDeck &deck, const std::string &path, const Parameters &p, const Miller &direction)
+/// "hcp crystal; Burgers vectors that glide: 1/3<11-20>, 1/3<11-23>".
+std::string crystal_with_burgers_vectors(const SlipSystems &systems)
 {
-  const Vec3 b = p.burgers_magnitude * p.orientation.unit_vector(direction);
-  if (p.slip_systems().glissile_planes(b).empty())
-    deck.reject(path, "[" + to_string(direction) + "] is not a <110> direction of this fcc crystal");
+  return std::string(name_of(systems.lattice())) + " crystal; Burgers vectors that glide: " + systems.glissile_types();
+}
+
+/// The shortest lattice translation along @p direction, nm; must be one that glides on some plane of the crystal.
+Vec3 read_burgers(const InputDeck &deck, const std::string &path, const SlipSystems &systems, const Miller &direction)
+{
+  const Vec3 b = shortest_translation(systems.lattice(), systems.lattice_parameter(), systems.orientation(), direction);
+  if (systems.glissile_planes(b).empty())
+    deck.reject(path, systems.orientation().cell().direction_name(direction) +
+                          " is not the direction of a Burgers vector that glides in this " +
+                          crystal_with_burgers_vectors(systems));
   return b;
 }
 
-void read_sources(const InputDeck &deck, Parameters &p)
+/// The slip planes of a Burgers vector, by name: "(0-11), (101)".
+std::string names_of_planes(const SlipSystems &systems, const Vec3 &burgers)
+{
+  std::string names;
+  for (const std::size_t k : systems.glissile_planes(burgers))
+    names += (names.empty() ? "" : ", ") + systems.orientation().cell().plane_name(systems.planes()[k].miller);
+  return names;
+}
+
+/// Whether the crystal slips along @p burgers on the planes @p plane.
+bool glides_on(const SlipSystems &systems, const Vec3 &burgers, const Miller &plane)
+{
+  return std::ranges::any_of(systems.glissile_planes(burgers), [&](const std::size_t k)
+                             { return without_sense(systems.planes()[k].miller) == without_sense(plane); });
+}
+
+void read_sources(const InputDeck &deck, const SlipSystems &systems, Parameters &p)
 {
   const std::string path = "Microstructure/Frank-Read sources";
+  const UnitCell &cell = p.orientation.cell();
   for (const std::string &item : deck.items(path))
   {
     const auto f = fields(deck, path, item, 5, "plane / Burgers direction / centre / length / character");
     FrankReadSource source;
-    source.plane = read_miller(deck, path, f[0]);
-    const Miller direction = read_miller(deck, path, f[1]);
-    source.burgers = read_burgers(deck, path, p, direction);
+    source.plane = read_miller(deck, path, f[0], IndicesOf::plane, p.lattice);
+    const Miller direction = read_miller(deck, path, f[1], IndicesOf::direction, p.lattice);
+    source.burgers = read_burgers(deck, path, systems, direction);
     if (dot(source.plane, direction) != 0)
-      deck.reject(path, "b . n is not zero: [" + to_string(direction) + "] does not lie in the plane (" +
-                            to_string(source.plane) + ")");
-    if (!p.slip_systems().find(source.burgers, source.plane))
-      deck.reject(path, "(" + to_string(source.plane) + ") is not a {111} plane of this fcc crystal");
+      deck.reject(path, "b . n is not zero: " + cell.direction_name(direction) + " does not lie in the plane " +
+                            cell.plane_name(source.plane));
+    if (!glides_on(systems, source.burgers, source.plane))
+      deck.reject(path, cell.plane_name(source.plane) + " is not a slip plane of " + cell.direction_name(direction) +
+                            " in this " + name_of(p.lattice) + " crystal; allowed are " +
+                            names_of_planes(systems, source.burgers));
     source.centre = to_vec3(field_numbers(deck, path, f[2], 3)) * units::metre;
     source.length = field_numbers(deck, path, f[3], 1)[0] * units::metre;
     source.character_angle = field_numbers(deck, path, f[4], 1)[0];
@@ -202,20 +279,29 @@ void read_sources(const InputDeck &deck, Parameters &p)
   }
 }
 
-void read_loops(const InputDeck &deck, Parameters &p)
+void read_loops(const InputDeck &deck, const SlipSystems &systems, Parameters &p)
 {
   const std::string path = "Microstructure/Loops";
+  const UnitCell &cell = p.orientation.cell();
   for (const std::string &item : deck.items(path))
   {
     const auto f = fields(deck, path, item, 5, "plane / Burgers direction / centre / radius / corners");
     PolygonLoop loop;
-    loop.plane = read_miller(deck, path, f[0]);
-    loop.burgers = read_burgers(deck, path, p, read_miller(deck, path, f[1]));
+    loop.plane = read_miller(deck, path, f[0], IndicesOf::plane, p.lattice);
+    const Miller direction = read_miller(deck, path, f[1], IndicesOf::direction, p.lattice);
+    loop.burgers = read_burgers(deck, path, systems, direction);
+    const bool glide = dot(loop.plane, direction) == 0;
+    if (glide && !glides_on(systems, loop.burgers, loop.plane))
+      deck.reject(path, cell.direction_name(direction) + " lies in " + cell.plane_name(loop.plane) +
+                            " but does not glide there; allowed are " + names_of_planes(systems, loop.burgers) +
+                            ", and planes that do not hold it");
     loop.centre = to_vec3(field_numbers(deck, path, f[2], 3)) * units::metre;
     loop.radius = field_numbers(deck, path, f[3], 1)[0] * units::metre;
     const double corners = field_numbers(deck, path, f[4], 1)[0];
-    if (loop.radius <= 0 || corners < 3 || corners > 1000 || corners != std::floor(corners))
-      deck.reject(path, "a loop needs a positive radius and 3 to 1000 corners");
+    const bool on_slip_planes = corners == 0 && !glide;
+    if (loop.radius <= 0 || !(corners >= 3 || on_slip_planes) || corners > 1000 || corners != std::floor(corners))
+      deck.reject(path, "a loop needs a positive radius and 3 to 1000 corners, or 0 for a loop with b out of its plane "
+                        "whose sides lie on slip planes");
     loop.corners = static_cast<unsigned>(corners);
     p.loops.push_back(loop);
   }
@@ -223,8 +309,9 @@ void read_loops(const InputDeck &deck, Parameters &p)
 
 void read_microstructure(const InputDeck &deck, Parameters &p)
 {
-  read_sources(deck, p);
-  read_loops(deck, p);
+  const SlipSystems systems = p.slip_systems();
+  read_sources(deck, systems, p);
+  read_loops(deck, systems, p);
   if (const std::string file = deck.text("Microstructure/Network file"); !file.empty())
   {
     p.network_file = (std::filesystem::path(deck.directory()) / file).string();
@@ -281,7 +368,7 @@ Parameters interpret(const InputDeck &deck)
   const std::string mode = deck.text("Mode");
   p.mode = mode == "finite" ? Mode::finite : mode == "periodic" ? Mode::periodic : Mode::infinite;
   read_material(deck, p);
-  read_orientation(deck, p);
+  read_crystal(deck, p);
   read_mesh(deck, p);
   read_grain(deck, p);
   read_loading(deck, p);

@@ -80,9 +80,11 @@ struct Parameters
 {
   Mode mode = Mode::finite;
   IsotropicMedium medium;
-  double burgers_magnitude = 0; ///< nm
+  Lattice lattice = Lattice::fcc;
+  double burgers_magnitude = 0; ///< of the principal slip, nm
   double lattice_parameter = 0; ///< nm
-  Orientation orientation;
+  SlipSystemOptions slip;
+  Orientation orientation; ///< with the unit cell, that is c/a
   LinearGlide mobility;
   GrainParameters grain;
   PeriodicCell cell; ///< of the periodic mode; its volume is the reference volume of the infinite mode
@@ -98,7 +100,7 @@ struct Parameters
   OutputParameters output;
 
   ForceSettings force_settings() const { return {medium, core_cutoff_radius, pair_tolerance, grain.ray_direction}; }
-  SlipSystems slip_systems() const { return {Lattice::fcc, lattice_parameter, orientation}; }
+  SlipSystems slip_systems() const { return {lattice, lattice_parameter, orientation, slip}; }
 };
 
 /// Turns the deck into parameters. Throws InputError for entries that contradict each other or make no sense.

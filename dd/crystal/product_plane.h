@@ -16,10 +16,9 @@ namespace ddfem
 /// Burgers vector. A screw lies in several: it takes the first of @p parents (planes of the lines that reacted) that is among
 /// them, otherwise the first in the order of systems.planes(): {111} in the order A B C D; {110} before {112} before {123};
 /// prismatic (the principal slip of zirconium and titanium) before basal before first-order before second-order pyramidal.
-/// Where lines are not exactly straight the same rule decides between planes that enclose less than the tolerance with xi.
 ///
 /// Examples: fcc Lomer lock, a/2<110> along <110> in {100}: sessile; fcc a<100> (Hirth): sessile.
-/// Source: Hirth & Lothe, Theory of Dislocations, 2nd ed. 1982, ch. 22 (reactions of dislocations in fcc crystals).
+/// Source: Hirth & Lothe, Theory of Dislocations, 2nd ed. 1982, ch. 22 (intersections and barriers).
 std::optional<std::size_t> product_plane(const SlipSystems &systems, const Vec3 &xi, const Vec3 &burgers,
                                          std::span<const std::size_t> parents = {});
 } // namespace ddfem

@@ -1,5 +1,7 @@
 #include "dd/microstructure/sources.h"
 
+#include "dd/crystal/product_plane.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,14 +17,64 @@ void require_positive(const double value, const char *what)
     throw std::invalid_argument(std::string(what) + " must be positive");
 }
 
-/// Glide plane of a straight line along @p t with Burgers vector @p b that is not in the loop's own plane.
-PlaneIndex prism_plane(Network &network, const Orientation &orientation, const Vec3 &t, const Vec3 &b, const Vec3 &x)
+/// Unit vectors in the plane of a loop; u x v is its normal. Angles run from u to v.
+struct LoopFrame
 {
-  const Vec3 n = t.cross(b);
-  if (n.norm() < 1e-6 * t.norm() * b.norm())
-    return {}; // screw: any plane through it; without choosing one it does not glide
-  const Vec3 normal = n.normalized();
-  return network.planes().find_or_insert(rationalised(orientation.to_crystal(normal), 9, 1e-9), normal, x);
+  Vec3 u, v;
+};
+
+/// Corners of the polygon whose sides touch the circle of radius r at these angles (ascending, neighbours less than pi apart).
+std::vector<Vec3> tangent_polygon(const PolygonLoop &loop, const LoopFrame &frame, const std::vector<double> &angles)
+{
+  std::vector<Vec3> corners;
+  for (std::size_t k = 0; k < angles.size(); ++k)
+  {
+    const double before = k == 0 ? angles.back() - 2 * std::numbers::pi : angles[k - 1];
+    const double middle = (before + angles[k]) / 2, distance = loop.radius / std::cos((angles[k] - before) / 2);
+    corners.push_back(loop.centre + distance * (std::cos(middle) * frame.u + std::sin(middle) * frame.v));
+  }
+  return corners;
+}
+
+/// Corners of the loop whose sides run along the traces of the glide planes of b.
+std::vector<Vec3> crystallographic_corners(const SlipSystems &systems, const PolygonLoop &loop, const LoopFrame &frame)
+{
+  std::vector<double> angles;
+  const Vec3 n = frame.u.cross(frame.v);
+  for (const std::size_t p : systems.glissile_planes(loop.burgers))
+  {
+    // The outward normal of the side is the part of the plane's normal that lies in the plane of the loop.
+    const Vec3 outward = systems.planes()[p].normal - n.dot(systems.planes()[p].normal) * n;
+    const double angle = std::atan2(outward.dot(frame.v), outward.dot(frame.u));
+    angles.push_back(angle);
+    angles.push_back(angle > 0 ? angle - std::numbers::pi : angle + std::numbers::pi);
+  }
+  if (angles.size() < 4)
+    throw std::invalid_argument("a loop whose sides lie on slip planes needs a Burgers vector with two glide planes");
+  std::ranges::sort(angles);
+  return tangent_polygon(loop, frame, angles);
+}
+
+std::vector<Vec3> regular_corners(const PolygonLoop &loop, const LoopFrame &frame)
+{
+  std::vector<Vec3> corners;
+  for (unsigned k = 0; k < loop.corners; ++k)
+  {
+    const double angle = 2 * std::numbers::pi * k / loop.corners;
+    corners.push_back(loop.centre + loop.radius * (std::cos(angle) * frame.u + std::sin(angle) * frame.v));
+  }
+  return corners;
+}
+
+/// The slip plane that holds segment @p s, exactly: a plane that is only near leaves it sessile.
+PlaneIndex slip_plane_of(Network &network, const SlipSystems &systems, const SegmentIndex s)
+{
+  const Vec3 xi = network.direction(s).normalized(), x = network.position(network.start(s));
+  const auto p = product_plane(systems, xi, network.burgers(s));
+  constexpr double exact = 1e-9;
+  if (!p || std::abs(systems.planes()[*p].normal.dot(xi)) > exact)
+    return {};
+  return network.planes().find_or_insert(systems.planes()[*p].miller, systems.planes()[*p].normal, x);
 }
 } // namespace
 
@@ -47,7 +99,7 @@ void add_frank_read_source(Network &network, const Orientation &orientation, con
 {
   require_positive(source.length, "the length of a Frank-Read source");
   require_positive(source.burgers.norm(), "the Burgers vector of a Frank-Read source");
-  const Vec3 n = orientation.unit_vector(source.plane);
+  const Vec3 n = orientation.plane_normal(source.plane);
   const Vec3 e = source.burgers.normalized();
   if (std::abs(n.dot(e)) > 1e-9)
     throw std::invalid_argument("the Burgers vector of a Frank-Read source must lie in its glide plane");
@@ -61,31 +113,30 @@ void add_frank_read_source(Network &network, const Orientation &orientation, con
   add_line(network, points, source.burgers, plane, false, NodeConstraint::pinned);
 }
 
-void add_polygon_loop(Network &network, const Orientation &orientation, const PolygonLoop &loop,
-                      const double max_segment)
+void add_polygon_loop(Network &network, const SlipSystems &systems, const PolygonLoop &loop, const double max_segment)
 {
   require_positive(loop.radius, "the radius of a loop");
   require_positive(loop.burgers.norm(), "the Burgers vector of a loop");
-  if (loop.corners < 3)
-    throw std::invalid_argument("a loop needs at least three corners");
-  const Vec3 n = orientation.unit_vector(loop.plane);
-  const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
+  const Vec3 n = systems.orientation().plane_normal(loop.plane);
+  const Vec3 u = n.unitOrthogonal();
+  const LoopFrame frame{u, n.cross(u)};
   const bool glide = std::abs(n.dot(loop.burgers)) < 1e-9 * loop.burgers.norm();
-  const auto corner = [&](const unsigned k) -> Vec3
-  {
-    const double angle = 2 * std::numbers::pi * (k % loop.corners) / loop.corners;
-    return loop.centre + loop.radius * (std::cos(angle) * u + std::sin(angle) * v);
-  };
-  const double side = (corner(1) - corner(0)).norm();
-  const unsigned pieces = std::max(1U, static_cast<unsigned>(std::ceil(side / max_segment - 1e-9)));
+  if (loop.corners == 1 || loop.corners == 2 || (loop.corners == 0 && glide))
+    throw std::invalid_argument("a loop needs at least three corners");
+  const std::vector<Vec3> corners =
+      loop.corners == 0 ? crystallographic_corners(systems, loop, frame) : regular_corners(loop, frame);
   const PlaneIndex own_plane = glide ? network.planes().find_or_insert(loop.plane, n, loop.centre) : PlaneIndex{};
   std::vector<Vec3> points;
-  for (unsigned k = 0; k < loop.corners; ++k)
+  for (std::size_t k = 0; k < corners.size(); ++k)
+  {
+    const Vec3 side = corners[(k + 1) % corners.size()] - corners[k];
+    const unsigned pieces = std::max(1U, static_cast<unsigned>(std::ceil(side.norm() / max_segment - 1e-9)));
     for (unsigned m = 0; m < pieces; ++m)
     {
-      const Vec3 x = corner(k) + double(m) / pieces * (corner(k + 1) - corner(k));
+      const Vec3 x = corners[k] + double(m) / pieces * side;
       points.push_back(glide ? network.planes().project(own_plane, x) : x);
     }
+  }
   const auto nodes = add_line(network, points, loop.burgers, own_plane, true, NodeConstraint::free);
   if (glide)
     return;
@@ -93,7 +144,7 @@ void add_polygon_loop(Network &network, const Orientation &orientation, const Po
   {
     const SegmentIndex s = *network.find(nodes[k], nodes[(k + 1) % nodes.size()]);
     Segment segment = network.get(s);
-    segment.plane = prism_plane(network, orientation, network.direction(s), loop.burgers, network.position(nodes[k]));
+    segment.plane = slip_plane_of(network, systems, s);
     network.set(s, segment);
   }
 }
