@@ -94,7 +94,7 @@ UnitCell read_cell(const InputDeck &deck, const Lattice lattice)
   {
     if (given != 0)
       deck.reject(path,
-                  std::string("an ") + name_of(lattice) + " crystal is cubic; only hcp crystals have a ratio c/a");
+                  std::string("this ") + name_of(lattice) + " crystal is cubic; only hcp crystals have a ratio c/a");
     return {};
   }
   try

@@ -20,7 +20,7 @@ void check(const Lattice lattice, const double lattice_parameter, const Orientat
     throw std::invalid_argument("The lattice parameter is " + std::to_string(lattice_parameter) +
                                 " nm; it must be positive.");
   if ((lattice == Lattice::hcp) == orientation.cell().is_cubic())
-    throw std::invalid_argument(std::string("The orientation of an ") + name_of(lattice) + " crystal needs a " +
+    throw std::invalid_argument(std::string("The orientation given to this ") + name_of(lattice) + " crystal needs a " +
                                 (lattice == Lattice::hcp ? "hexagonal" : "cubic") + " unit cell.");
   if (options.bcc_123_planes && lattice != Lattice::bcc)
     throw std::invalid_argument("Slip on {123} planes is known of bcc crystals only.");

@@ -25,17 +25,17 @@ UnitCell UnitCell::hexagonal(const double c_over_a)
 
 Vec3 UnitCell::direction(const Miller &uvw) const
 {
-  const Vec3 m = to_vector(uvw);
   if (is_cubic())
-    return m;
+    return to_vector(uvw);
+  const Vec3 m = to_vector(uvw);
   return {m[0] - m[1] / 2, m[1] * std::numbers::sqrt3 / 2, m[2] * *c_over_a_};
 }
 
 Vec3 UnitCell::normal(const Miller &hkl) const
 {
-  const Vec3 m = to_vector(hkl);
   if (is_cubic())
-    return m;
+    return to_vector(hkl);
+  const Vec3 m = to_vector(hkl);
   return {m[0], (m[0] + 2 * m[1]) * inverse_sqrt3, m[2] / *c_over_a_};
 }
 

@@ -1,6 +1,6 @@
 #include "dd/microstructure/adopt_slip_planes.h"
 
-#include <map>
+#include <optional>
 #include <vector>
 
 namespace ddfem
@@ -42,26 +42,21 @@ std::vector<PlaneIndex> planes_at(Network &network, const NodeIndex i)
 
 void adopt_slip_planes(Network &network, const SlipSystems &systems)
 {
-  std::map<PlaneIndex, PlaneIndex> adopted;
+  std::vector<PlaneIndex> adopted(network.planes().size()); // invalid: not looked up yet
   for (const SegmentIndex s : network.segments())
   {
     Segment segment = network.get(s);
     if (!segment.plane.is_valid())
       continue;
-    auto found = adopted.find(segment.plane);
-    if (found == adopted.end())
+    PlaneIndex &found = adopted[segment.plane.value];
+    if (!found.is_valid())
     {
       const auto k = matching_plane(systems, network.planes()[segment.plane]);
-      const Vec3 point = network.position(segment.start);
-      found = adopted
-                  .emplace(segment.plane, k ? network.planes().find_or_insert(systems.planes()[*k].miller,
-                                                                              systems.planes()[*k].normal, point)
-                                            : segment.plane)
-                  .first;
+      found = k ? network.planes().find_or_insert(systems.planes()[*k].miller, systems.planes()[*k].normal,
+                                                  network.position(segment.start))
+                : segment.plane;
     }
-    if (found->second == segment.plane)
-      continue;
-    segment.plane = found->second;
+    segment.plane = found;
     network.set(s, segment);
   }
   for (const NodeIndex i : network.nodes())

@@ -31,7 +31,7 @@ std::vector<Vec3> tangent_polygon(const PolygonLoop &loop, const LoopFrame &fram
   {
     const double before = k == 0 ? angles.back() - 2 * std::numbers::pi : angles[k - 1];
     const double middle = (before + angles[k]) / 2, distance = loop.radius / std::cos((angles[k] - before) / 2);
-    corners.push_back(loop.centre + distance * (std::cos(middle) * frame.u + std::sin(middle) * frame.v));
+    corners.emplace_back(loop.centre + distance * (std::cos(middle) * frame.u + std::sin(middle) * frame.v));
   }
   return corners;
 }
@@ -61,7 +61,7 @@ std::vector<Vec3> regular_corners(const PolygonLoop &loop, const LoopFrame &fram
   for (unsigned k = 0; k < loop.corners; ++k)
   {
     const double angle = 2 * std::numbers::pi * k / loop.corners;
-    corners.push_back(loop.centre + loop.radius * (std::cos(angle) * frame.u + std::sin(angle) * frame.v));
+    corners.emplace_back(loop.centre + loop.radius * (std::cos(angle) * frame.u + std::sin(angle) * frame.v));
   }
   return corners;
 }

@@ -28,6 +28,30 @@ nodalData =
        0 0 1
 """
 
+# A line of Burgers vector 1/2[10-1] of fcc, in units of b.
+OTHER_B = OPEN_B.replace("0,1 0.5773502692 0.5773502692 0.5773502692", "0,1 0.7071067812 0.0 -0.7071067812").replace(
+    "0,0 -0.5773502692 -0.5773502692 -0.5773502692", "0,0 -0.7071067812 0.0 0.7071067812").replace("0 0 1\n", "0 1 0\n")
+
+# A zirconium crystal with the directions of its axes; the source is to be given.
+ZIRCONIUM = """subsection Material
+ set Name = zirconium
+end
+subsection Crystal
+ set Direction along x = 2 -1 -1 0
+ set Direction along z = 0 0 0 1
+end
+subsection Microstructure
+ set Frank-Read sources = {}
+end
+"""
+IRON = """subsection Material
+ set Name = iron
+end
+subsection Microstructure
+ set Frank-Read sources = {}
+end
+"""
+
 # name, text appended to (or replacing, if it starts with '!') the example, --set arguments, words the message must have
 CASES = [
     ("wrong entry name", "subsection Loading\n set Strain rat = 1\nend\n", [],
@@ -60,7 +84,46 @@ CASES = [
     ("directions that are not orthogonal", "subsection Crystal\n set Direction along x = 1 1 1\nend\n", [],
      ["input.prm:", "Direction along x", "orthogonal"]),
     ("unknown material", "subsection Material\n set Name = aluminiumm\nend\n", [], ["input.prm:", "aluminium", "copper"]),
-    ("material without slip systems", "subsection Material\n set Name = zirconium\nend\n", [], ["input.prm:", "fcc"]),
+    ("hcp directions that are not orthogonal", "subsection Material\n set Name = zirconium\nend\n", [],
+     ["input.prm:", "Direction along x", "[01-1-1]", "orthogonal"]),
+    ("four indices that do not add up", ZIRCONIUM.format("0 0 0 1 / 1 1 2 0 / 0 0 5e-7 / 2e-7 / 90"), [],
+     ["input.prm:", "Frank-Read sources", "112", "add up to zero"]),
+    ("four indices in a cubic crystal", IRON.format("0 1 -1 1 / 1 1 1 / 0 0 5e-7 / 2e-7 / 90"), [],
+     ["input.prm:", "Frank-Read sources", "three integer Miller indices", "bcc"]),
+    ("five indices", ZIRCONIUM.format("0 0 0 0 1 / 1 1 -2 0 / 0 0 5e-7 / 2e-7 / 90"), [],
+     ["input.prm:", "Frank-Read sources", "three or four", "hcp"]),
+    ("index that is no integer", ZIRCONIUM.format("0 0 0 1.5 / 1 1 -2 0 / 0 0 5e-7 / 2e-7 / 90"), [],
+     ["input.prm:", "Frank-Read sources", "integer"]),
+    ("slip plane that an <a> does not have", ZIRCONIUM.format("1 -1 0 2 / 1 1 -2 0 / 0 0 5e-7 / 2e-7 / 90"), [],
+     ["input.prm:", "(1-102)", "[11-20]", "hcp", "(0001)", "(1-100)", "(1-101)"]),
+    ("Burgers vector <c>, which does not glide", ZIRCONIUM.format("1 0 -1 0 / 0 0 0 1 / 0 0 5e-7 / 2e-7 / 90"), [],
+     ["input.prm:", "[0001]", "hcp", "1/3<11-20>", "1/3<11-23>"]),
+    ("source with b.n != 0 in four indices", ZIRCONIUM.format("0 0 0 1 / 1 1 -2 3 / 0 0 5e-7 / 2e-7 / 90"), [],
+     ["input.prm:", "b . n", "[11-23]", "(0001)"]),
+    ("slip on {123} that is not switched on", IRON.format("1 2 -3 / 1 1 1 / 0 0 5e-7 / 2e-7 / 90"), [],
+     ["input.prm:", "(12-3)", "[111]", "bcc", "(01-1)", "(11-2)"]),
+    ("Burgers vector of another lattice", IRON.format("0 0 1 / 1 1 0 / 0 0 5e-7 / 2e-7 / 90"), [],
+     ["input.prm:", "[110]", "bcc", "a/2<111>", "a<100>"]),
+    ("Burgers vector a<100> of fcc",
+     "subsection Microstructure\n set Loops = 1 0 0 / 1 0 0 / 0 0 5e-7 / 1e-7 / 12\nend\n", [],
+     ["input.prm:", "Loops", "[100]", "fcc", "a/2<110>"]),
+    ("glide loop on a plane that does not slip",
+     "subsection Microstructure\n set Loops = 0 0 1 / 1 1 0 / 0 0 5e-7 / 1e-7 / 12\nend\n", [],
+     ["input.prm:", "Loops", "(001)", "(-111)", "(1-11)"]),
+    ("glide loop without corners",
+     "subsection Microstructure\n set Loops = 1 1 1 / 1 -1 0 / 0 0 5e-7 / 1e-7 / 0\nend\n", [],
+     ["input.prm:", "Loops", "3 to 1000 corners"]),
+    ("{123} planes in fcc", "subsection Crystal\n set Slip on 123 planes = true\nend\n", [],
+     ["input.prm:", "Slip on 123 planes", "bcc", "fcc"]),
+    ("axial ratio of a cubic crystal", "subsection Crystal\n set c over a = 1.6\nend\n", [],
+     ["input.prm:", "c over a", "fcc", "hcp"]),
+    ("absurd axial ratio", ZIRCONIUM.format("") + "subsection Crystal\n set c over a = 16\nend\n", [],
+     ["input.prm:", "c over a = 16", "0.5", "3"]),
+    ("two indices", "subsection Crystal\n set Direction along x = 1 1\nend\n", [],
+     ["input.prm:", "Direction along x = 1 1", "three or four"]),
+    ("network file of another crystal",
+     IRON.format("") + "subsection Microstructure\n set Network file = other.data\nend\n", [],
+     ["Microstructure", "Burgers vector", "no translation", "bcc", "a/2<111>"]),
     ("segment limits", "subsection Discretisation\n set Maximum segment = 1.6e-8\nend\n", [],
      ["input.prm:", "Maximum segment", "twice"]),
     ("face that does not exist", "subsection Boundary conditions\n set Platen face = top\nend\n", [],
@@ -96,6 +159,8 @@ for name, text, extra, words in CASES:
             f.write(base + "\n" + text)
         with open(os.path.join(directory, "open.data"), "w") as f:
             f.write(OPEN_B)
+        with open(os.path.join(directory, "other.data"), "w") as f:
+            f.write(OTHER_B)
         before = sorted(os.listdir(directory))
         good = check(name, attempt(["run", "input.prm", "-o", "out"] + extra, directory), words, directory, before)
         passed, failed = passed + good, failed + (not good)
