@@ -20,21 +20,17 @@ std::optional<std::size_t> matching_plane(const SlipSystems &systems, const Glid
   return {};
 }
 
-/// The planes of the arms of node @p i, moved by the period of the network to where the node is.
-std::vector<PlaneIndex> planes_at(Network &network, const NodeIndex i)
+/// The planes of the arms of node @p i, except where it is an image of the node, across a periodic boundary, that lies on the
+/// plane.
+std::vector<PlaneIndex> planes_at(const Network &network, const NodeIndex i)
 {
   std::vector<PlaneIndex> planes;
   for (const SegmentIndex s : network.connected_segments(i))
   {
-    const PlaneIndex p = network.plane(s);
-    if (!p.is_valid())
-      continue;
-    const Vec3 image =
-        network.start(s) == i ? network.position(i) : Vec3(network.position(network.start(s)) + network.direction(s));
-    const Vec3 shift = network.position(i) - image;
-    const bool same_image = shift.norm() <= GlidePlanes::offset_quantum;
-    planes.push_back(
-        same_image ? p : network.planes().find_or_insert_parallel(p, Vec3(network.planes().project(p, image) + shift)));
+    const Vec3 end = network.position(network.start(s)) + network.direction(s);
+    const bool itself = network.start(s) == i || (end - network.position(i)).norm() <= GlidePlanes::offset_quantum;
+    if (network.plane(s).is_valid() && itself)
+      planes.push_back(network.plane(s));
   }
   return planes;
 }

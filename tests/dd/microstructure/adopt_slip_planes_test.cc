@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <unistd.h>
 
@@ -69,18 +70,72 @@ TEST_F(HexagonalFile, PrismaticLoopKeepsItsSidesAndCorners)
     EXPECT_FALSE(is_zero(network.planes()[network.plane(s)].miller));
 }
 
+/// A straight line whose plane encloses @p angle (rad) with the basal plane.
+Network line_near_basal_plane(const SlipSystems &systems, const double angle)
+{
+  const SlipSystem &basal = systems[*systems.find("(0001)[11-20]")];
+  const Vec3 along = basal.burgers.normalized(), across = basal.normal.cross(along);
+  const Vec3 normal = std::cos(angle) * basal.normal - std::sin(angle) * across;
+  const Vec3 line = std::cos(angle) * across + std::sin(angle) * basal.normal;
+  Network network;
+  const PlaneIndex plane = network.planes().find_or_insert({0, 0, 0}, normal, Vec3::Zero());
+  add_line(network, {Vec3::Zero(), Vec3(50 * line), Vec3(100 * line + 20 * along)}, basal.burgers, plane, false,
+           NodeConstraint::pinned);
+  return network;
+}
+
+TEST_F(HexagonalFile, NodesFollowAPlaneThatIsSlightlyTurned)
+{
+  constexpr double angle = 5e-5;
+  Network network = line_near_basal_plane(systems_, angle);
+  ASSERT_TRUE(network.violations().empty());
+  const Vec3 before = network.position(*network.find_node(2));
+  adopt_slip_planes(network, systems_);
+  EXPECT_TRUE(network.violations().empty());
+  EXPECT_EQ(network.planes()[network.plane(*network.segments().begin())].miller, (Miller{0, 0, 1}));
+  EXPECT_NEAR((network.position(*network.find_node(2)) - before).norm(), 100 * angle, 1e-9);
+}
+
 TEST_F(HexagonalFile, OtherPlanesAreLeftAlone)
 {
-  // A plane near the basal one, and one that is no slip plane at all.
-  const Vec3 n = systems_.orientation().plane_normal({0, 0, 1}), b = systems_[3].burgers;
   for (const double angle : {2e-4, 0.3})
   {
-    const Vec3 tilted = (std::cos(angle) * n + std::sin(angle) * n.cross(b).normalized()).normalized();
-    Network network;
-    const PlaneIndex plane = network.planes().find_or_insert({0, 0, 0}, tilted, Vec3::Zero());
-    add_line(network, {Vec3::Zero(), Vec3(10 * b), Vec3(20 * b)}, b, plane, false, NodeConstraint::pinned);
+    Network network = line_near_basal_plane(systems_, angle);
+    const PlaneIndex plane = network.plane(*network.segments().begin());
     adopt_slip_planes(network, systems_);
-    EXPECT_EQ(network.plane(*network.segments().begin()), plane);
+    EXPECT_EQ(network.plane(*network.segments().begin()), plane) << angle;
+    EXPECT_TRUE(is_zero(network.planes()[plane].miller)) << angle;
   }
+}
+
+TEST_F(HexagonalFile, LineThatWindsAroundACellStaysOnTheImagesOfItsPlane)
+{
+  // The plane is oblique to the cell, so that its images have other offsets.
+  const SlipSystem &basal = systems_[*systems_.find("(0001)[11-20]")];
+  const Vec3 along = basal.burgers.normalized();
+  const double period = 100;
+  Network network;
+  network.set_period(Vec3::Constant(period));
+  std::vector<NodeIndex> nodes;
+  for (int k = 0; k < 12; ++k)
+  {
+    const Vec3 x = 15.0 * k * along;
+    nodes.push_back(network.insert(Node{x - period * (x / period).array().round().matrix(),
+                                        k == 0 || k == 11 ? NodeConstraint::pinned : NodeConstraint::free}));
+  }
+  for (std::size_t k = 0; k + 1 < nodes.size(); ++k)
+  {
+    const PlaneIndex plane = network.planes().find_or_insert({0, 0, 0}, basal.normal, network.position(nodes[k]));
+    network.insert(Segment{nodes[k], nodes[k + 1], basal.burgers, plane});
+  }
+  ASSERT_GT(network.planes().size(), 1u);
+  ASSERT_TRUE(network.violations().empty());
+  std::vector<Vec3> before;
+  for (const NodeIndex i : nodes)
+    before.push_back(network.position(i));
+  adopt_slip_planes(network, systems_);
+  EXPECT_TRUE(network.violations().empty());
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    EXPECT_LT((network.position(nodes[k]) - before[k]).norm(), 1e-9);
 }
 } // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 
@@ -100,6 +101,24 @@ TEST(Loops, SidesThatLieOnNoSlipPlaneAreSessile)
   for (const SegmentIndex s : network.segments())
     sessile += network.plane(s).is_valid() ? 0 : 1;
   EXPECT_EQ(sessile, 12);
+}
+
+TEST(Loops, SideOfARegularPolygonGlidesIfItLiesOnASlipPlaneExactly)
+{
+  // In (11-20) the traces of the {10-11} planes of a enclose atan(2 r/sqrt(3)) with the basal plane, two pairs of sides of a
+  // regular octagon 67.5 degrees.
+  const double octagonal = std::sqrt(3.0) / 2 * std::tan(67.5 * std::numbers::pi / 180);
+  for (const auto &[c_over_a, glissile] : {std::pair{octagonal, 4}, {octagonal * (1 + 1.4e-4), 0}}) // 5e-5 rad
+  {
+    const SlipSystems systems(Lattice::hcp, a0, Orientation(UnitCell::hexagonal(c_over_a)));
+    Network network;
+    add_polygon_loop(network, systems, a_loop(systems, 8), 1000);
+    EXPECT_TRUE(network.violations().empty());
+    int n = 0;
+    for (const SegmentIndex s : network.segments())
+      n += network.plane(s).is_valid() ? 1 : 0;
+    EXPECT_EQ(n, glissile);
+  }
 }
 
 TEST(Loops, CubicPrismaticLoopsOnSlipPlanes)
