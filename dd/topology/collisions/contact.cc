@@ -1,4 +1,4 @@
-// Roots of distance polynomials: extends annex B.1 of the thesis on collisions in OptiDis, where |P12(t)| is
+// Roots of distance polynomials: extends annex B.1 of A. Durocher's thesis (OptiDis), where |P12(t)| is
 // taken as constant and only the minima of the distance are looked for.
 //
 // All ends move straight, so the differences of their positions are linear in time, and the distance between two
