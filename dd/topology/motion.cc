@@ -60,10 +60,12 @@ void slide_surface_node(TopologyContext &context, const NodeIndex i, const Vec3 
     context.remaining[i.value].setZero();
 }
 
-/// Where an interior node stops that heads for @p target, outside the grain, and meets an impenetrable face at @p crossing.
+/// Where an interior node stops that heads for @p target, outside the grain, and meets an impenetrable face at @p crossing: a
+/// node on one glide plane slides along the face, one on several has only its straight way.
 Vec3 stopping_point(const TopologyContext &context, const NodeIndex i, const Vec3 &target, const Vec3 &crossing)
 {
-  return project_to_surface(*context.shape, target, plane_normal_or_zero(context.network, i)).value_or(crossing);
+  const Vec3 normal = plane_normal_or_zero(context.network, i);
+  return normal.isZero(0) ? crossing : project_to_surface(*context.shape, target, normal).value_or(crossing);
 }
 
 /// Cuts the line at node @p i, which has just reached a free face.

@@ -7,6 +7,7 @@
 #include "dd/mobility/linear_glide.h"
 #include "dd/topology/topology_context.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -22,18 +23,17 @@ inline double uniform(Random &random, const double low, const double high)
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-/// Adds, on random slip systems and centred in a cube [margin, width - margin]^3, glide loops of @p n_corners segments of
-/// length @p segment and as many lines pinned at both ends of the same length, until there are @p n_segments.
+/// Adds, on random slip systems and centred in a cube [0, width]^3, glide loops of @p n_corners segments of
+/// length @p segment and as many lines pinned at both ends of the same length, until there are @p n_segments; with a @p shape only such as lie inside.
 inline void add_random_lines(Network &network, const SlipSystems &systems, Random &random, const double width,
-                             const double segment, const std::size_t n_segments, const double margin = 0)
+                             const double segment, const std::size_t n_segments, const GrainShape *shape)
 {
   constexpr int n_corners = 30;
   const double radius = segment / (2 * std::sin(std::numbers::pi / n_corners));
   for (bool loop = true; network.n_segments() < n_segments; loop = !loop)
   {
     const SlipSystem &system = systems[random() % systems.size()];
-    const Vec3 centre(uniform(random, margin, width - margin), uniform(random, margin, width - margin),
-                      uniform(random, margin, width - margin));
+    const Vec3 centre(uniform(random, 0, width), uniform(random, 0, width), uniform(random, 0, width));
     const PlaneIndex plane = network.planes().find_or_insert(system.plane_miller, system.normal, centre);
     const Vec3 e1 = system.burgers.normalized(), e2 = system.normal.cross(e1);
     const double turn = uniform(random, 0, 2 * std::numbers::pi);
@@ -44,7 +44,8 @@ inline void add_random_lines(Network &network, const SlipSystems &systems, Rando
       const double r = loop ? radius : segment * (k - 5);
       points.push_back(network.planes().project(plane, centre + r * (std::cos(angle) * e1 + std::sin(angle) * e2)));
     }
-    add_line(network, points, system.burgers, plane, loop, NodeConstraint::pinned);
+    if (!shape || std::ranges::all_of(points, [&](const Vec3 &x) { return shape->signed_distance(x) < -1; }))
+      add_line(network, points, system.burgers, plane, loop, NodeConstraint::pinned);
   }
 }
 
