@@ -121,25 +121,6 @@ double area_functional(const Network &n, const Vec3 &b)
   return area;
 }
 
-/// What a network looks like without its numbering: the segments as sets of numbers.
-using Picture = std::multiset<std::array<double, 9>>;
-
-Picture picture_of(const Network &n)
-{
-  Picture picture;
-  for (const SegmentIndex s : n.segments())
-  {
-    Vec3 x = n.position(n.start(s)), y = n.position(n.end(s)), b = n.burgers(s);
-    const auto key = [](const Vec3 &v) { return std::array<double, 3>{v[0], v[1], v[2]}; };
-    if (key(y) < key(x))
-    {
-      std::swap(x, y);
-      b = -b;
-    }
-    picture.insert({x[0], x[1], x[2], y[0], y[1], y[2], b[0] + 0.0, b[1] + 0.0, b[2] + 0.0});
-  }
-  return picture;
-}
 } // namespace
 
 TEST(ContinuousCollisions, FrontsThatMeetFormTheStraightJunctionOfSubsteppedProximity)

@@ -1,17 +1,24 @@
 // Networks of random loops and lines of an fcc crystal, moved at random: what topology has to survive.
 #pragma once
 
+#include "dd/crystal/product_plane.h"
 #include "dd/crystal/slip_systems.h"
 #include "dd/geometry/grain_shape.h"
 #include "dd/microstructure/sources.h"
 #include "dd/mobility/linear_glide.h"
-#include "dd/topology/topology_context.h"
+#include "dd/topology/collisions/continuous_collisions.h"
+#include "dd/topology/motion.h"
+#include "dd/topology/remesh.h"
+#include "tests/dd/topology/topology_fixture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numbers>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace ddfem
@@ -88,4 +95,89 @@ inline std::vector<Vec3> random_displacements(const Network &network, const std:
   }
   return displacement;
 }
+
+enum class Body
+{
+  periodic,
+  box,     ///< five free faces, one impenetrable
+  cylinder ///< free
+};
+
+struct RandomNetwork : TopologyFixture
+{
+  SlipSystems systems{Lattice::fcc, 0.405};
+  CandidateList candidates;
+  Body body = Body::periodic;
+  std::unique_ptr<GrainShape> grain;
+  CollisionSettings collision_settings;
+  CollisionReport report; ///< of the last step
+
+  RandomNetwork(const std::size_t n_segments, const double density, const Body kind) : body(kind)
+  {
+    settings = {10, 30, 1, 1.25};
+    settings.max_area = 180;
+    const double segment = 18;
+    const double width = std::cbrt(static_cast<double>(n_segments) * segment / density);
+    if (body == Body::periodic)
+      network.set_period(Vec3(width, width, width));
+    else if (body == Body::box)
+    {
+      grain = std::make_unique<BoxShape>(Vec3(0, 0, 0), Vec3(width, width, width));
+      grain->set_face_kind(4, FaceKind::impenetrable);
+    }
+    else
+      grain = std::make_unique<CylinderShape>(Vec3(width / 2, width / 2, 0), width / 2, width);
+    shape = grain.get();
+    Random random(n_segments);
+    add_random_lines(network, systems, random, width, segment, n_segments, shape);
+  }
+
+  RandomNetwork() = default;
+
+  /// The same network with a candidate list of its own.
+  RandomNetwork copy() const
+  {
+    RandomNetwork other;
+    other.body = body;
+    other.network = network;
+    other.shape = shape;
+    other.settings = settings;
+    return other;
+  }
+
+  void step(const std::uint64_t k)
+  {
+    TopologyContext c = context();
+    c.remaining = random_displacements(network, k, 0.5 * settings.min_segment, shape);
+    c.product_plane = [this](Network &n, const Vec3 &xi, const Vec3 &b, const Vec3 &x)
+    {
+      const auto p = product_plane(systems, xi, b);
+      return p ? n.planes().find_or_insert(systems.planes()[*p].miller, systems.planes()[*p].normal, x) : PlaneIndex{};
+    };
+    bend_displacements_along_surface(c);
+    report = collide_continuously(c, candidates, collision_settings);
+    move_nodes(c, 1);
+    remesh(c);
+    swept.clear();
+    if (network.node_capacity() > 2 * network.n_nodes() + 64)
+      network.clean();
+    check();
+  }
+
+  /// Throws std::runtime_error naming what is wrong.
+  void check() const
+  {
+    network.check_invariants(1e-5);
+    if (!shape)
+      return;
+    for (const NodeIndex i : network.nodes())
+    {
+      const double outside = shape->signed_distance(network.position(i));
+      const bool surface = network.constraint(i) == NodeConstraint::surface;
+      if (outside > 1e-6 || (surface && outside < -1e-6))
+        throw std::runtime_error(name_of(network.constraint(i)) + (" node " + std::to_string(network.id(i))) +
+                                 " lies " + std::to_string(outside) + " nm outside the grain");
+    }
+  }
+};
 } // namespace ddfem
