@@ -34,7 +34,7 @@ TEST_P(RandomNetworkIn, KeepsAllInvariantsInEveryStep)
 TEST_P(RandomNetworkIn, IndependentEventsHandledTogetherGiveTheSequentialOutcomeToTheLastBit)
 {
   RandomNetwork f(2000, 3e-4, GetParam());
-  std::size_t events = 0, rounds = 0;
+  std::size_t events = 0, rounds = 0, sequential_rounds = 0;
   for (std::uint64_t k = 0; k < 70; ++k)
   {
     if (k < 40)
@@ -48,10 +48,12 @@ TEST_P(RandomNetworkIn, IndependentEventsHandledTogetherGiveTheSequentialOutcome
     other.step(k);
     events += f.report.handled;
     rounds += f.report.rounds;
+    sequential_rounds += other.report.rounds;
     ASSERT_EQ(f.report.handled, other.report.handled) << "step " << k;
     ASSERT_TRUE(picture_of(f.network) == picture_of(other.network)) << "step " << k;
   }
-  EXPECT_LT(2 * rounds, events); // more than two at a time on average
+  EXPECT_GT(events, 1000U);
+  EXPECT_LT(rounds, sequential_rounds); // some of them at the same time
 }
 
 TEST_P(RandomNetworkIn, DoesNotDependOnTheNumberOfThreads)
