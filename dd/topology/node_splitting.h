@@ -2,28 +2,23 @@
 #pragma once
 
 #include "dd/forces/nodal_forces.h"
-#include "dd/mobility/linear_glide.h"
+#include "dd/topology/junctions_trial.h"
 #include "dd/topology/topology_context.h"
 
 #include <functional>
 
 namespace ddfem
 {
-/// Physics that decides whether and how a node splits.
-struct SplittingModel
-{
-  IsotropicMedium medium;
-  double core_cutoff_radius = 0.0; ///< nm; sets the line tension of a new junction segment
-  LinearGlide mobility;
-};
-
 /// Nodal forces for the present network, computed only when some node can split.
 using ForceFunction = std::function<NodalForces(const Network &)>;
 
-/// Splits every free node with four to eight arms into the two nodes, each with two arms at least, that dissipate the most
-/// power sum F.V (Bulatov & Cai, Computer Simulations of Dislocations, 2006, section 10.4), if that is more than the
-/// unsplit node dissipates and the two move apart. Where the arms of each part balance, nothing joins the parts: lines
-/// that met and annihilated reconnect this way. Otherwise a junction segment with the remaining Burgers vector joins them,
-/// whose line tension is taken off the forces. The parts are set apart by one and a half collision radii.
+/// Splits free nodes with four to eight arms into two nodes of two arms at least, so that the power F.V is the largest
+/// (Bulatov & Cai, Computer Simulations of Dislocations, 2006, section 10.4). All partitions of the arms are tried, each in
+/// the configuration that the split would make: the parts one and a half collision radii apart (less at short arms) in
+/// directions that the glide planes of their arms allow, joined by a segment that carries the Burgers vector the arms leave over,
+/// if any, with the forces of this configuration. The node splits into the parts of largest power if that exceeds its own by
+/// the margin of @p model, and if in the trial configuration the parts move apart by their own velocities.
+///
+/// @p forces is called once if some node can split, and again only where one split has changed the arms of another candidate.
 void split_nodes(TopologyContext &context, const SplittingModel &model, const ForceFunction &forces);
 } // namespace ddfem

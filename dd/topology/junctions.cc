@@ -1,0 +1,63 @@
+#include "dd/topology/junctions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace ddfem
+{
+namespace
+{
+/// Directions closer than half a degree count as parallel: planes and lines of one crystal are never that close.
+constexpr double parallel_sine = 1e-2;
+
+/// Takes @p direction out of the directions that are left.
+void forbid(Mat3 &left, const Vec3 &direction)
+{
+  const Vec3 rest = left * direction;
+  if (rest.norm() > parallel_sine)
+    left -= rest * rest.transpose() / rest.squaredNorm();
+}
+} // namespace
+
+ArmConstraint arm_constraint(const Network &network, const SegmentIndex s)
+{
+  return {network.normal(s), network.direction(s).normalized()};
+}
+
+Mat3 free_directions(std::span<const ArmConstraint> arms)
+{
+  if (std::all_of(arms.begin(), arms.end(), [](const ArmConstraint &a) { return a.is_sessile(); }))
+    return Mat3::Zero();
+  Mat3 left = Mat3::Identity();
+  // Glide planes first: their normals are exact, the direction of a line is rounded like the positions of its ends.
+  for (const ArmConstraint &a : arms)
+    if (!a.is_sessile())
+      forbid(left, a.normal);
+  for (const ArmConstraint &a : arms)
+    if (a.is_sessile())
+    {
+      const Vec3 across = a.line.unitOrthogonal();
+      forbid(left, across);
+      forbid(left, a.line.cross(across));
+    }
+  return left.trace() > 0.5 ? left : Mat3(Mat3::Zero());
+}
+
+Mat3 free_directions(const Network &network, const NodeIndex i)
+{
+  std::vector<ArmConstraint> arms;
+  for (const SegmentIndex s : network.connected_segments(i))
+    arms.push_back(arm_constraint(network, s));
+  return free_directions(arms);
+}
+
+Vec3 only_direction(const Mat3 &projector)
+{
+  if (std::abs(projector.trace() - 1) > 0.5)
+    return Vec3::Zero();
+  Eigen::Index column = 0;
+  projector.colwise().squaredNorm().maxCoeff(&column);
+  return projector.col(column).normalized();
+}
+} // namespace ddfem
