@@ -52,6 +52,14 @@ NodeNeighbourhood::NodeNeighbourhood(const Network &network, const NodeIndex nod
   unsplit = merged(all);
 }
 
+Mat3 NodeNeighbourhood::directions() const
+{
+  std::vector<ArmConstraint> constraints;
+  for (const Arm &a : node_arms)
+    constraints.push_back(a.constraint);
+  return free_directions(constraints);
+}
+
 Mat3 NodeNeighbourhood::directions(std::span<const std::size_t> which) const
 {
   std::vector<ArmConstraint> constraints;

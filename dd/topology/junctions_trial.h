@@ -64,6 +64,8 @@ public:
   /// Total force, and glide of the unsplit node.
   const NodeMotion &whole() const { return unsplit; }
 
+  /// Directions in which the unsplit node can move.
+  Mat3 directions() const;
   /// Directions in which a part with these arms can move if nothing joins it to the other part.
   Mat3 directions(std::span<const std::size_t> which) const;
   /// The same for part @p side of @p split, its junction included.

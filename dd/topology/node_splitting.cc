@@ -38,6 +38,7 @@ struct Partition
 {
   TrialSplit split;
   std::array<Mat3, 2> directions;
+  Vec3 common = Vec3::Zero(); ///< the only line along which the unsplit node can move, if there is just one
   std::array<NodeMotion, 2> merged;
   Shifts arm_sum{Vec3::Zero(), Vec3::Zero()}; ///< sums of the arms' unit vectors
 };
@@ -57,6 +58,7 @@ Partition make_partition(const NodeNeighbourhood &node, const std::size_t mask)
   }
   if (p.split.burgers.norm() < 1e-6 * node.arms()[0].burgers.norm())
     p.split.burgers.setZero();
+  p.common = only_direction(node.directions());
   for (std::size_t side = 0; side < 2; ++side)
   {
     p.directions[side] = node.directions(p.split.arms[side]);
@@ -75,16 +77,13 @@ std::vector<Shifts> candidate_shifts(const NodeNeighbourhood &node, const Partit
     found.push_back({u0, u1});
     found.push_back({-u0, -u1});
   };
-  const Vec3 zero = Vec3::Zero(), common = only_direction(p.directions[0] * p.directions[1]);
   const Vec3 line0 = only_direction(p.directions[0]), line1 = only_direction(p.directions[1]);
-  if (line0.squaredNorm() > 0 && line1.squaredNorm() > 0 && line0.cross(line1).norm() < 1e-6)
-    add_both_senses(line0, -line0);
+  if (p.common.squaredNorm() > 0)
+    add_both_senses(p.common, -p.common);
   else if (line0.squaredNorm() > 0)
-    add_both_senses(line0, zero);
+    add_both_senses(line0, Vec3::Zero());
   else if (line1.squaredNorm() > 0)
-    add_both_senses(zero, line1);
-  else if (common.squaredNorm() > 0)
-    add_both_senses(common, -common);
+    add_both_senses(Vec3::Zero(), line1);
   const Vec3 apart = p.arm_sum[0] - p.arm_sum[1];
   found.push_back({p.directions[0] * apart, p.directions[1] * -apart});
   if (p.split.burgers.isZero(0) && p.split.arms[0].size() == 2 && p.split.arms[1].size() == 2)
