@@ -20,7 +20,8 @@ struct FrankReadSource
 
 /// A closed polygon. A Burgers vector in its plane makes a glide loop, which glides in that plane. Otherwise the loop is
 /// prismatic or mixed, and each side glides on the slip plane of the crystal that holds its direction and b. Sides for which
-/// there is no such slip plane are sessile, and so are the corners at their ends.
+/// there is no such slip plane are sessile, and so are the corners at their ends. With b along the plane's normal the loop is
+/// one of vacancies, with b opposite to it one of interstitials (FS/RH: the plastic strain of a grown loop is -b (x) A / V).
 struct PolygonLoop
 {
   Miller plane{};              ///< three indices, on the axes of UnitCell; any plane
