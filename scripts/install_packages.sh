@@ -3,14 +3,14 @@
 #
 #   scripts/install_packages.sh [--build-only]
 #
-# --build-only leaves out what only the tests and checks need. Runs as root, or through sudo.
+# --build-only leaves out what only the tests, checks and benchmarks need. Runs as root, or through sudo.
 set -euo pipefail
 
 build_packages=(
   cmake ninja-build g++ libopenmpi-dev openmpi-bin libeigen3-dev libdeal.ii-dev libhdf5-openmpi-dev libcli11-dev
   nlohmann-json3-dev python3 python3-numpy python3-matplotlib
 )
-test_packages=(git libgtest-dev clang-format clang-tidy)
+test_packages=(git libgtest-dev libbenchmark-dev clang-format clang-tidy)
 
 usage() { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; }
 

@@ -206,7 +206,7 @@ void CandidateList::rebuild(const Network &network, std::span<const Vec3> displa
   const double reach =
       radius + 0.5 * usual_maximum(segments.size(), [&](std::size_t k) { return network.length(segments[k]); });
   if (steps_of_build_ > 0)
-    tuner_.retire(steps_of_build_, expired, usual_displacement);
+    tuner_.retire(steps_of_build_, n_entered_, expired, usual_displacement);
   steps_of_build_ = 1;
   statistics_.skin = tuner_.choose(usual_displacement, reach);
 

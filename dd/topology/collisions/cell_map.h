@@ -66,7 +66,8 @@ public:
         f(steps[0].bits[i] | steps[1].bits[j] | steps[2].bits[k]);
   }
 
-  /// Cells that a cube about a point touches: coordinate (first + k) mod n for k < count along each axis.
+  /// Cells that a cube about a point touches: along each axis `count` from `first` on, the last of a periodic one
+  /// followed by its first.
   struct Range
   {
     Cell first, count;
@@ -77,10 +78,20 @@ public:
 
   template <class F> void for_each_key(const Range &range, F &&f) const
   {
-    for (std::uint32_t i = 0; i < range.count[0]; ++i)
-      for (std::uint32_t j = 0; j < range.count[1]; ++j)
-        for (std::uint32_t k = 0; k < range.count[2]; ++k)
-          f(morton_index((range.first[0] + i) % n_[0], (range.first[1] + j) % n_[1], (range.first[2] + k) % n_[2]));
+    const auto next = [this](int axis, std::uint32_t c) { return c + 1 < n_[axis] ? c + 1 : 0; };
+    std::uint32_t x = range.first[0];
+    for (std::uint32_t i = 0; i < range.count[0]; ++i, x = next(0, x))
+    {
+      const std::uint64_t bits_x = spread_bits(x);
+      std::uint32_t y = range.first[1];
+      for (std::uint32_t j = 0; j < range.count[1]; ++j, y = next(1, y))
+      {
+        const std::uint64_t bits_xy = bits_x | spread_bits(y) << 1;
+        std::uint32_t z = range.first[2];
+        for (std::uint32_t k = 0; k < range.count[2]; ++k, z = next(2, z))
+          f(bits_xy | spread_bits(z) << 2);
+      }
+    }
   }
 
   /// One more than the highest bit that a Morton index of these cells can have.

@@ -5,8 +5,9 @@
 
 namespace ddfem
 {
-void SkinTuner::retire(std::size_t steps, bool expired, double displacement)
+void SkinTuner::retire(std::size_t steps, std::size_t entered, bool expired, double displacement)
 {
+  entered_ = static_cast<double>(entered);
   // The list was good for `steps` steps, but not for one more if it has expired. Between these limits, nodes that move
   // straight drift as fast as they are displaced.
   const auto n = static_cast<double>(steps);
@@ -37,7 +38,8 @@ double SkinTuner::pairs(double skin) const
 double SkinTuner::cost(double skin) const
 {
   const double width = (last_.reach + skin) / (last_.reach + last_.skin);
-  const double build = build_cost * last_.n_segments + test_cost * last_.sphere_tests * width * width;
+  const double build =
+      build_cost * last_.n_segments + test_cost * last_.sphere_tests * width * width + enter_cost * entered_;
   const double steps = drift_ > 0 ? std::max(1.0, std::floor(skin / (2 * safety * drift_) * (1 + 1e-9))) : INFINITY;
   return build / steps + pair_cost * pairs(skin);
 }
