@@ -17,6 +17,8 @@ constexpr std::size_t one_in_unusual = 64;
 /// Segments entered one by one cost about eight times as much as in a build: when one in eight has been, rebuild.
 constexpr std::size_t one_in_inserted = 8;
 constexpr std::size_t least_inserted = 16;
+/// Entering one is some microseconds of work.
+constexpr std::size_t least_entered_for_threads = 32;
 /// Spheres are a little larger than the segments need, for the rounding of positions.
 constexpr double rounding = 1e-9;
 
@@ -80,7 +82,10 @@ CandidatePair ordered(const Network &network, SegmentIndex a, SegmentIndex b)
 /// Sorted and joined parts. Ids are unique: the result does not depend on the parts.
 std::vector<CandidatePair> merged(const Network &network, std::vector<std::vector<CandidatePair>> &parts)
 {
-#pragma omp parallel for schedule(dynamic)
+  std::size_t n = 0;
+  for (const std::vector<CandidatePair> &part : parts)
+    n += part.size();
+#pragma omp parallel for schedule(dynamic) if (n > least_for_threads)
   for (std::vector<CandidatePair> &part : parts)
     std::sort(part.begin(), part.end(), ById{network});
   std::vector<CandidatePair> all;
@@ -159,7 +164,7 @@ std::vector<NodeIndex> CandidateList::nodes_out_of_reach(const Network &network,
 {
   const std::span<const NodeIndex> nodes = network.nodes();
   std::vector<std::vector<NodeIndex>> found(static_cast<std::size_t>(omp_get_max_threads()));
-#pragma omp parallel
+#pragma omp parallel if (nodes.size() > least_for_threads)
   {
     std::vector<NodeIndex> &mine = found[static_cast<std::size_t>(omp_get_thread_num())];
 #pragma omp for schedule(static)
@@ -225,7 +230,7 @@ std::vector<SegmentIndex> CandidateList::fill_grid(const Network &network)
 {
   const std::span<const SegmentIndex> segments = network.segments();
   std::vector<Sphere> spheres(2 * segments.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (segments.size() > least_for_threads)
   for (std::size_t k = 0; k < segments.size(); ++k)
   {
     const std::array<Sphere, 2> both = spheres_of(network, segments[k]);
@@ -263,7 +268,7 @@ void CandidateList::find_pairs_of_grid(const Network &network)
   build.skin = statistics_.skin;
   build.reach = grid_.largest_distance(radius_) - statistics_.skin;
   std::size_t tests = 0;
-#pragma omp parallel reduction(+ : tests)
+#pragma omp parallel reduction(+ : tests) if (grid_.size() > least_for_threads)
   {
     std::vector<CandidatePair> &mine = found[static_cast<std::size_t>(omp_get_thread_num())];
     std::array<std::size_t, SkinTuner::n_bins> bins{};
@@ -331,7 +336,7 @@ void CandidateList::insert(const Network &network, const std::vector<SegmentInde
   }
   std::vector<std::vector<CandidatePair>> found(static_cast<std::size_t>(omp_get_max_threads()));
   std::size_t tests = 0;
-#pragma omp parallel for schedule(static) reduction(+ : tests)
+#pragma omp parallel for schedule(static) reduction(+ : tests) if (segments.size() > least_entered_for_threads)
   for (std::size_t k = 0; k < segments.size(); ++k)
   {
     std::vector<CandidatePair> &mine = found[static_cast<std::size_t>(omp_get_thread_num())];

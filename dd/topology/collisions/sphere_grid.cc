@@ -24,7 +24,7 @@ void sort_by_digit(const std::vector<Entry> &from, std::vector<Entry> &to, unsig
 {
   const auto digit = [shift](const Entry &e) { return (e.key >> shift) & (n_digits - 1); };
   std::vector<std::vector<std::uint32_t>> places;
-#pragma omp parallel
+#pragma omp parallel if (from.size() > least_for_threads)
   {
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     const auto n_threads = static_cast<std::size_t>(omp_get_num_threads());
@@ -52,7 +52,7 @@ void sort_by_digit(const std::vector<Entry> &from, std::vector<Entry> &to, unsig
 std::vector<Entry> sorted_entries(const std::vector<Sphere> &spheres, const CellMap &map)
 {
   std::vector<Entry> entries(spheres.size()), other(spheres.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (spheres.size() > least_for_threads)
   for (std::size_t k = 0; k < spheres.size(); ++k)
     entries[k] = {map.key(map.wrapped(spheres[k].centre)), static_cast<std::uint32_t>(k)};
   for (unsigned shift = 0; shift < map.key_bits(); shift += digit_bits)
@@ -76,7 +76,7 @@ void SphereGrid::build(const std::vector<Sphere> &spheres, const CellMap &map)
   largest_ = 0;
   std::vector<std::uint32_t> place(n);
   double largest = 0;
-#pragma omp parallel for schedule(static) reduction(max : largest)
+#pragma omp parallel for schedule(static) reduction(max : largest) if (n > least_for_threads)
   for (std::size_t i = 0; i < n; ++i)
   {
     const Sphere &s = spheres[entries[i].sphere];
@@ -90,7 +90,7 @@ void SphereGrid::build(const std::vector<Sphere> &spheres, const CellMap &map)
     largest = std::max(largest, s.radius);
   }
   largest_ = largest;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (n > least_for_threads)
   for (std::size_t i = 0; i < n; ++i)
     partner_[i] = place[entries[i].sphere ^ 1U];
   cells_.clear();

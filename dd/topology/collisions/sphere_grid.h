@@ -20,6 +20,9 @@ struct Sphere
   SegmentIndex segment;
 };
 
+/// Below this number of spheres, segments or nodes the work of a loop is not worth waking other threads.
+inline constexpr std::size_t least_for_threads = 2000;
+
 /// Hash value of @p bits bits that keeps the last @p near bits of a Morton index: cells near each other stay near each
 /// other in memory. The others are multiplied by 2^64 over the golden ratio (Knuth, TAOCP 3, section 6.4).
 inline std::size_t hash_of_neighbourhood(std::uint64_t key, unsigned near, unsigned bits)

@@ -4,6 +4,7 @@
 #include "dd/network/network.h"
 
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,9 @@ public:
     for (Vec3 &d : displacement)
       d = vector(pick(rare) == 0 ? 10 * size : size);
   }
+
+  /// The same displacement for all.
+  void shift(const Vec3 &d) { displacement.assign(network.node_capacity(), d); }
 
   void move()
   {
@@ -115,4 +119,11 @@ private:
   std::mt19937 random_;
   double longest_; ///< well below half of the smallest period, nm
 };
+
+/// Whether two segments have a node in common.
+inline bool adjacent(const Network &network, SegmentIndex a, SegmentIndex b)
+{
+  const std::set<NodeIndex> nodes{network.start(a), network.end(a), network.start(b), network.end(b)};
+  return nodes.size() < 4;
+}
 } // namespace ddfem
