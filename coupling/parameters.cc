@@ -228,7 +228,7 @@ std::string crystal_with_burgers_vectors(const SlipSystems &systems)
 /// The shortest lattice translation along @p direction, nm; must be one that glides on some plane of the crystal.
 Vec3 read_burgers(const InputDeck &deck, const std::string &path, const SlipSystems &systems, const Miller &direction)
 {
-  const Vec3 b = shortest_translation(systems.lattice(), systems.lattice_parameter(), systems.orientation(), direction);
+  Vec3 b = shortest_translation(systems.lattice(), systems.lattice_parameter(), systems.orientation(), direction);
   if (systems.glissile_planes(b).empty())
     deck.reject(path, systems.orientation().cell().direction_name(direction) +
                           " is not the direction of a Burgers vector that glides in this " +

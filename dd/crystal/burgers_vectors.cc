@@ -9,8 +9,8 @@ namespace ddfem
 {
 namespace
 {
-/// Whether (n1 n2 n3) a/2 is a translation of a cubic lattice: fcc has those with an even sum of indices, bcc those with
-/// indices that are all even or all odd.
+/// Whether (n1 n2 n3) a/2 is a translation of a cubic lattice: fcc has those with an even sum of indices, bcc those
+/// with indices that are all even or all odd.
 bool is_translation(const Lattice lattice, const Miller &halves)
 {
   if (lattice == Lattice::fcc)

@@ -26,13 +26,13 @@ const char *name_of(BurgersType type);
 /// Length of the Burgers vector of the principal slip, nm: a/sqrt(2) fcc, a sqrt(3)/2 bcc, a hcp (hcp: that of <a>).
 double burgers_magnitude(Lattice lattice, double lattice_parameter);
 
-/// The type of @p burgers (nm, sample frame), or empty if it is not a translation of the lattice (a partial, or a vector of
-/// another crystal). Compared to 1e-4 of the lattice parameter. The cell of @p orientation gives c/a.
+/// The type of @p burgers (nm, sample frame), or empty if it is not a translation of the lattice (a partial, or a
+/// vector of another crystal). Compared to 1e-4 of the lattice parameter. The cell of @p orientation gives c/a.
 std::optional<BurgersType> burgers_type(Lattice lattice, double lattice_parameter, const Orientation &orientation,
                                         const Vec3 &burgers);
 
-/// The shortest lattice translation (nm, sample frame) along a lattice direction, sense kept: what a direction means as a
-/// Burgers vector. Example: fcc [110] gives a/2[110], [100] gives a[100].
+/// The shortest lattice translation (nm, sample frame) along a lattice direction, sense kept: what a direction means as
+/// a Burgers vector. Example: fcc [110] gives a/2[110], [100] gives a[100].
 Vec3 shortest_translation(Lattice lattice, double lattice_parameter, const Orientation &orientation,
                           const Miller &direction);
 } // namespace ddfem

@@ -8,8 +8,8 @@
 
 namespace ddfem
 {
-/// (h k i l) with i = -(h+k), or [u v t w] with t = -(u+v). Used in input and names only; inside, a plane is (h k l) and a
-/// direction [U V W] on the axes a1, a2, c.
+/// (h k i l) with i = -(h+k), or [u v t w] with t = -(u+v). Used in input and names only; inside, a plane is (h k l)
+/// and a direction [U V W] on the axes a1, a2, c.
 using MillerBravais = std::array<int, 4>;
 
 /// Dropping i leaves (h k l). Throws std::invalid_argument if h + k + i is not zero.

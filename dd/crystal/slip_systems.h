@@ -76,14 +76,14 @@ struct SlipSystemOptions
 /// (Kristallplastizitaet, 1935; as in Franciosi, Berveiller & Zaoui, Acta Metall. 28 (1980) 273): planes A = (-111),
 /// B = (111), C = (-1-11), D = (1-11); directions 1 = [011], 2 = [0-11], 3 = [101], 4 = [-101], 5 = [-110], 6 = [110].
 /// bcc: 12 x {110}<111>, 12 x {112}<111>, on request 24 x {123}<111>.
-/// hcp: 3 prismatic <a>, 3 basal <a>, 6 first-order pyramidal <a>, 12 first-order pyramidal <c+a>, 6 second-order pyramidal
-/// <c+a> (list of Partridge, Metall. Rev. 12 (1967) 169; Yoo, Metall. Trans. A 12 (1981) 409). The first-order pyramidal
-/// planes are common to <a> and <c+a>.
+/// hcp: 3 prismatic <a>, 3 basal <a>, 6 first-order pyramidal <a>, 12 first-order pyramidal <c+a>, 6 second-order
+/// pyramidal <c+a> (list of Partridge, Metall. Rev. 12 (1967) 169; Yoo, Metall. Trans. A 12 (1981) 409). The
+/// first-order pyramidal planes are common to <a> and <c+a>.
 ///
-/// Products of reactions that glide though they are no slip systems: bcc a<100> on {011}. On {001} kinks of <100> edge lines
-/// in iron neither form nor move easily, on {011} they do (molecular dynamics of Chen, Wang & Yu; core structures in Acta
-/// Phys. Sin. 55 (2006) 5980), so {001} is not among the glide planes. Sessile: fcc a<100>, bcc a<110>, hcp <c>, and
-/// everything longer.
+/// Products of reactions that glide though they are no slip systems: bcc a<100> on {011}. In molecular
+/// dynamics of iron, <100> edge lines on {011} move by nucleating kinks, while on {001} kinks neither form nor migrate
+/// easily (Chen, Wang & Yu; core structures in Acta Phys. Sin. 55 (2006) 5980): {001} is not among the glide planes. Sessile: fcc a<100>, bcc a<110>, hcp
+/// <c>, and everything longer.
 class SlipSystems
 {
 public:
@@ -113,11 +113,12 @@ public:
   std::optional<SlipSystemMatch> find(const Vec3 &burgers, const Vec3 &normal) const;
   /// Index of the system with this name or Schmid-Boas label.
   std::optional<std::size_t> find(const std::string &name) const;
-  /// Indices into planes() of those on which a line with this Burgers vector can glide, ascending: two for an fcc a/2<110>,
-  /// four for an hcp <a>, two for a bcc a<100>. Empty for a Burgers vector that is none of this lattice, or sessile.
+  /// Indices into planes() of those on which a line with this Burgers vector can glide, ascending: two for an fcc
+  /// a/2<110>, four for an hcp <a>, two for a bcc a<100>. Empty for a Burgers vector that is none of this lattice, or
+  /// sessile.
   std::vector<std::size_t> glissile_planes(const Vec3 &burgers) const;
-  /// The family of a line with this Burgers vector on this plane (index into planes()), products included; empty if it does
-  /// not glide there.
+  /// The family of a line with this Burgers vector on this plane (index into planes()), products included; empty if it
+  /// does not glide there.
   std::optional<SlipFamily> family(const Vec3 &burgers, std::size_t plane) const;
   /// Type of a Burgers vector (nm, sample frame); see ddfem::burgers_type.
   std::optional<BurgersType> burgers_type(const Vec3 &burgers) const;

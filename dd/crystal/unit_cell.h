@@ -30,8 +30,8 @@ public:
 
   /// The lattice direction u a1 + v a2 + w a3 in the Cartesian crystal frame, units of a.
   Vec3 direction(const Miller &uvw) const;
-  /// Normal h b1 + k b2 + l b3 of a plane in the Cartesian crystal frame, with b_i . a_j = delta_ij, units of 1/a; its length
-  /// is the inverse spacing of the planes.
+  /// Normal h b1 + k b2 + l b3 of a plane in the Cartesian crystal frame, with b_i . a_j = delta_ij, units of 1/a; its
+  /// length is the inverse spacing of the planes.
   Vec3 normal(const Miller &hkl) const;
   /// Coordinates u, v, w of a vector of the Cartesian crystal frame; inverse of direction().
   Vec3 coordinates(const Vec3 &crystal_vector) const;

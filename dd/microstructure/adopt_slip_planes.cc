@@ -20,8 +20,8 @@ std::optional<std::size_t> matching_plane(const SlipSystems &systems, const Glid
   return {};
 }
 
-/// The planes of the arms of node @p i, except where it is an image of the node, across a periodic boundary, that lies on the
-/// plane.
+/// The planes of the arms of node @p i, except where it is an image of the node, across a periodic boundary, that lies
+/// on the plane.
 std::vector<PlaneIndex> planes_at(const Network &network, const NodeIndex i)
 {
   std::vector<PlaneIndex> planes;

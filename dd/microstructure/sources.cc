@@ -23,7 +23,8 @@ struct LoopFrame
   Vec3 u, v;
 };
 
-/// Corners of the polygon whose sides touch the circle of radius r at these angles (ascending, neighbours less than pi apart).
+/// Corners of the polygon whose sides touch the circle of radius r at these angles (ascending, neighbours less than pi
+/// apart).
 std::vector<Vec3> tangent_polygon(const PolygonLoop &loop, const LoopFrame &frame, const std::vector<double> &angles)
 {
   std::vector<Vec3> corners;

@@ -31,8 +31,8 @@ inline Mat3 rotation_about(const Vec3 &axis, const double degrees)
   return Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized()).toRotationMatrix();
 }
 
-/// m-3m of fcc and bcc: fourfold [001], threefold [111], inversion. 6/mmm of hcp: sixfold c, twofold a1, inversion. (The
-/// structure hcp has that point group too, its sixfold axis being a screw axis.)
+/// m-3m of fcc and bcc: fourfold [001], threefold [111], inversion. 6/mmm of hcp: sixfold c, twofold a1, inversion.
+/// (The structure hcp has that point group too, its sixfold axis being a screw axis.)
 inline std::vector<Mat3> point_group(const Lattice lattice)
 {
   const Mat3 inversion = -Mat3::Identity();

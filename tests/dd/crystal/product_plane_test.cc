@@ -88,8 +88,8 @@ void expect_table(const SlipSystems &systems, const SlipFamily of, const SlipFam
 
 TEST(ProductPlane, FccPairsAreThoseOfFranciosiBerveillerAndZaoui)
 {
-  // Acta Metall. 28 (1980) 273; Madec & Kubin, Acta Mater. 126 (2017) 166: per system one self, two coplanar, one collinear, two
-  // Hirth (a<100>), four glissile, two Lomer.
+  // Acta Metall. 28 (1980) 273; Madec & Kubin, Acta Mater. 126 (2017) 166: per system one self, two coplanar, one
+  // collinear, two Hirth (a<100>), four glissile, two Lomer.
   expect_table({Lattice::fcc, a0, Orientation::from_loading_axis({1, 2, 3})}, SlipFamily::fcc_111, SlipFamily::fcc_111,
                {{"self", 1},
                 {"coplanar", 2},
@@ -143,8 +143,8 @@ TEST(ProductPlane, GlissileFccJunctionsKeepAParentPlane)
 
 TEST(ProductPlane, BccPairsOf110PlanesGiveCubeVectorsThatGlideWhereTheyRunAlong111)
 {
-  // Planes at 60 degrees meet along <111>; with <100> that spans {011}. Planes at 90 degrees meet along <100>; with another <100>
-  // that spans {001}: sessile. <110> = 1/2[111] + 1/2[11-1] never forms: 2 > 3/4 + 3/4.
+  // Planes at 60 degrees meet along <111>; with <100> that spans {011}. Planes at 90 degrees meet along <100>; with
+  // another <100> that spans {001}: sessile. <110> = 1/2[111] + 1/2[11-1] never forms: 2 > 3/4 + 3/4.
   const SlipSystems systems(Lattice::bcc, a0);
   expect_table(systems, SlipFamily::bcc_110, SlipFamily::bcc_110,
                {{"self", 1}, {"coplanar", 1}, {"collinear", 2}, {"a<100> on {110}<100>", 6}, {"a<100> sessile", 2}});
@@ -171,8 +171,8 @@ TEST(ProductPlane, HcpBasalAndPyramidalLines)
 {
   for (const double c_over_a : {1.5929, 1.886})
   {
-    // Basal a with first-order c+a: the same a leaves <c>, sessile; the a of the pyramidal plane gives the other c+a of that plane;
-    // the third one a c+a in a prismatic plane, which is no slip plane of it.
+    // Basal a with first-order c+a: the same a leaves <c>, sessile; the a of the pyramidal plane gives the other c+a of
+    // that plane; the third one a c+a in a prismatic plane, which is no slip plane of it.
     expect_table(hcp(c_over_a), SlipFamily::pyramidal_ca, SlipFamily::basal,
                  {{"<0001> sessile", 1}, {"1/3<11-23> on first-order pyramidal <c+a>", 1}, {"1/3<11-23> sessile", 1}});
     expect_table(hcp(c_over_a), SlipFamily::pyramidal_a, SlipFamily::basal,

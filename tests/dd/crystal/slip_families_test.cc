@@ -172,8 +172,8 @@ TEST(SlipFamilies, HexagonalPlanesEncloseTheirAnglesWithTheBasalPlane)
 
 TEST(SlipFamilies, ProvideTheIndependentStrainsOfGrovesAndKelly)
 {
-  // Groves & Kelly, Phil. Mag. 8 (1963) 877: fcc and bcc 5, basal 2, prismatic 2, both 4, pyramidal <a> 4 and no more with
-  // any other <a> slip, <c+a> 5.
+  // Groves & Kelly, Phil. Mag. 8 (1963) 877: fcc and bcc 5, basal 2, prismatic 2, both 4, pyramidal <a> 4 and no more
+  // with any other <a> slip, <c+a> 5.
   using enum SlipFamily;
   const SlipSystems fcc = crystal(Lattice::fcc), bcc = crystal(Lattice::bcc), hcp = crystal(Lattice::hcp);
   EXPECT_EQ(independent_strains(fcc, {fcc_111}), 5);

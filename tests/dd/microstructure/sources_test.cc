@@ -105,8 +105,8 @@ TEST(Loops, SidesThatLieOnNoSlipPlaneAreSessile)
 
 TEST(Loops, SideOfARegularPolygonGlidesIfItLiesOnASlipPlaneExactly)
 {
-  // In (11-20) the traces of the {10-11} planes of a enclose atan(2 r/sqrt(3)) with the basal plane, two pairs of sides of a
-  // regular octagon 67.5 degrees.
+  // In (11-20) the traces of the {10-11} planes of a enclose atan(2 r/sqrt(3)) with the basal plane, two pairs of sides
+  // of a regular octagon 67.5 degrees.
   const double octagonal = std::sqrt(3.0) / 2 * std::tan(67.5 * std::numbers::pi / 180);
   for (const auto &[c_over_a, glissile] : {std::pair{octagonal, 4}, {octagonal * (1 + 1.4e-4), 0}}) // 5e-5 rad
   {
