@@ -80,10 +80,10 @@ struct SlipSystemOptions
 /// pyramidal <c+a> (list of Partridge, Metall. Rev. 12 (1967) 169; Yoo, Metall. Trans. A 12 (1981) 409). The
 /// first-order pyramidal planes are common to <a> and <c+a>.
 ///
-/// Products of reactions that glide though they are no slip systems: bcc a<100> on {011}. In molecular
-/// dynamics of iron, <100> edge lines on {011} move by nucleating kinks, while on {001} kinks neither form nor migrate
-/// easily (Chen, Wang & Yu; core structures in Acta Phys. Sin. 55 (2006) 5980): {001} is not among the glide planes. Sessile: fcc a<100>, bcc a<110>, hcp
-/// <c>, and everything longer.
+/// Products of reactions that glide though they are no slip systems: bcc a<100> on {011}. In molecular dynamics of
+/// iron, <100> edge lines on {011} move by nucleating kinks, while on {001} kinks neither form nor migrate easily
+/// (Chen, Wang & Yu; core structures in Acta Phys. Sin. 55 (2006) 5980): {001} is not among the glide planes. Sessile:
+/// fcc a<100>, bcc a<110>, hcp <c>, and everything longer.
 class SlipSystems
 {
 public:
