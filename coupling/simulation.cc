@@ -177,7 +177,8 @@ void Simulation::change_topology(TopologyContext &context)
 {
   const Timing::Scope scope(timing, "topology");
   ddfem::move_lines(context, candidates);
-  const SplittingModel model{parameters.medium, parameters.core_cutoff_radius, parameters.mobility};
+  SplittingModel model{parameters.medium, parameters.core_cutoff_radius, parameters.mobility};
+  model.applied = applied_stress();
   // The network has changed since the last solve, but its correction field has not: it is read at the new points.
   split_nodes(context, model,
               [&](const Network &n)
