@@ -3,6 +3,7 @@
 #include "dd/topology/line_operations.h"
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -52,12 +53,34 @@ std::optional<Vec3> sliding_target(const TopologyContext &context, const NodeInd
   return x && !is_impenetrable(*context.shape, *x) ? x : std::nullopt;
 }
 
+/// Where the way along the surface from @p p to @p q in a glide plane turns from one face to another; empty on one face.
+std::optional<Vec3> edge_between(const GrainShape &shape, const Vec3 &p, const Vec3 &q, const Vec3 &normal)
+{
+  if (normal.isZero(0) || shape.face(p) == shape.face(q))
+    return std::nullopt;
+  Mat3 rows;
+  rows << normal.transpose(), shape.outward_normal(p).transpose(), shape.outward_normal(q).transpose();
+  if (std::abs(rows.determinant()) < 1e-6)
+    return std::nullopt;
+  const Vec3 x = rows.inverse() * Vec3(normal.dot(p), rows.row(1).dot(p), rows.row(2).dot(q));
+  if ((x - p).norm() > 10 * (q - p).norm())
+    return std::nullopt;                       // the faces meet elsewhere
+  return project_to_surface(shape, x, normal); // exact already where both faces are flat
+}
+
+/// Moves a surface node along the surface: over an edge in two parts, so that the corner counts as swept.
 void slide_surface_node(TopologyContext &context, const NodeIndex i, const Vec3 &target)
 {
-  if (const auto x = sliding_target(context, i, target))
-    move_node(context, i, *x);
-  else
+  const auto x = sliding_target(context, i, target);
+  if (!x)
+  {
     context.remaining[i.value].setZero();
+    return;
+  }
+  const Vec3 normal = plane_normal_or_zero(context.network, i);
+  if (const auto edge = edge_between(*context.shape, context.network.position(i), *x, normal))
+    move_node(context, i, *edge);
+  move_node(context, i, *x);
 }
 
 /// Where an interior node stops that heads for @p target, outside the grain, and meets an impenetrable face at @p crossing: a
@@ -155,6 +178,8 @@ void leave_through_surface(TopologyContext &context, const SegmentIndex s)
   const Vec3 p = network.position(old.start), q = network.position(old.end), normal = network.normal(s);
   // The curve in which plane and surface intersect, by repeated halving.
   std::vector<Vec3> path{p, q};
+  if (const auto edge = edge_between(shape, p, q, normal))
+    path.insert(path.begin() + 1, *edge);
   for (int level = 0; level < 3; ++level)
   {
     std::vector<Vec3> finer{path.front()};
