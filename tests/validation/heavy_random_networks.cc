@@ -24,9 +24,10 @@ void run(const std::size_t n_segments, const ddfem::Body body, const char *name)
   const ddfem::CandidateStatistics &lists = f.candidates.statistics();
   std::printf(
       "%-9s %7zu segments at first, %7zu at last; %7zu collisions, %6zu annihilations, %7zu divided, %7zu joined, "
-      "%6zu exits, %6zu refused, %zu exhausted; lists built in %3zu of %3zu steps; %.2f us per segment and step\n",
+      "%6zu exits, %6zu splits, %6zu refused, %zu exhausted; lists built in %3zu of %3zu steps; %.2f us per segment "
+      "and step\n",
       name, n_segments, f.network.n_segments(), f.counts.collisions, f.counts.annihilations, f.counts.refinements,
-      f.counts.coarsenings, f.counts.surface_exits, refused, exhausted, lists.builds, lists.updates,
+      f.counts.coarsenings, f.counts.surface_exits, f.counts.splits, refused, exhausted, lists.builds, lists.updates,
       1e6 * time.count() / static_cast<double>(segment_steps));
 }
 } // namespace

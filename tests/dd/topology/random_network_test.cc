@@ -26,6 +26,7 @@ TEST_P(RandomNetworkIn, KeepsAllInvariantsInEveryStep)
   }
   EXPECT_GT(f.counts.collisions, 1000U);
   EXPECT_GT(f.counts.annihilations, 500U);
+  EXPECT_GT(f.counts.splits, 100U);
   EXPECT_GT(f.counts.refinements, 1000U);
   EXPECT_GT(f.counts.coarsenings, 1000U);
   EXPECT_EQ(f.counts.surface_exits > 500, GetParam() != Body::periodic);
@@ -34,6 +35,7 @@ TEST_P(RandomNetworkIn, KeepsAllInvariantsInEveryStep)
 TEST_P(RandomNetworkIn, IndependentEventsHandledTogetherGiveTheSequentialOutcomeToTheLastBit)
 {
   RandomNetwork f(2000, 3e-4, GetParam());
+  f.splitting = false;
   std::size_t events = 0, rounds = 0, sequential_rounds = 0;
   for (std::uint64_t k = 0; k < 70; ++k)
   {

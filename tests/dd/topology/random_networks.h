@@ -8,6 +8,7 @@
 #include "dd/mobility/linear_glide.h"
 #include "dd/topology/collisions/continuous_collisions.h"
 #include "dd/topology/motion.h"
+#include "dd/topology/node_splitting.h"
 #include "dd/topology/remesh.h"
 #include "tests/dd/topology/topology_fixture.h"
 
@@ -96,6 +97,25 @@ inline std::vector<Vec3> random_displacements(const Network &network, const std:
   return displacement;
 }
 
+/// Forces of the order of the line tension of aluminium in random directions, MPa nm^2.
+inline NodalForces random_forces(const Network &network, const std::uint64_t step)
+{
+  NodalForces forces;
+  forces.total.assign(network.node_capacity(), Vec3::Zero());
+  forces.segment_ends.resize(network.segment_capacity());
+  const auto random_vector = [&](const std::uint64_t id, const std::uint64_t end)
+  { return Vec3(2000 * Vec3(noise(id, step, 3 * end), noise(id, step, 3 * end + 1), noise(id, step, 3 * end + 2))); };
+  for (const SegmentIndex s : network.segments())
+  {
+    SegmentForces &f = forces.segment_ends[s.value];
+    f.start = random_vector(network.id(s), 0);
+    f.end = random_vector(network.id(s), 1);
+    forces.total[network.start(s).value] += f.start;
+    forces.total[network.end(s).value] += f.end;
+  }
+  return forces;
+}
+
 enum class Body
 {
   periodic,
@@ -111,6 +131,7 @@ struct RandomNetwork : TopologyFixture
   std::unique_ptr<GrainShape> grain;
   CollisionSettings collision_settings;
   CollisionReport report; ///< of the last step
+  bool splitting = true;  ///< with random forces, which depend on the persistent ids
 
   RandomNetwork(const std::size_t n_segments, const double density, const Body kind) : body(kind)
   {
@@ -142,6 +163,7 @@ struct RandomNetwork : TopologyFixture
     other.network = network;
     other.shape = shape;
     other.settings = settings;
+    other.splitting = splitting;
     return other;
   }
 
@@ -157,6 +179,10 @@ struct RandomNetwork : TopologyFixture
     bend_displacements_along_surface(c);
     report = collide_continuously(c, candidates, collision_settings);
     move_nodes(c, 1);
+    const IsotropicMedium aluminium{26500, 0.345, 0.286};
+    if (splitting)
+      split_nodes(c, SplittingModel{aluminium, aluminium.a, {0.01, 0.01}},
+                  [k](const Network &n) { return random_forces(n, k); });
     remesh(c);
     swept.clear();
     if (network.node_capacity() > 2 * network.n_nodes() + 64)
