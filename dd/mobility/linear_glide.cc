@@ -1,55 +1,22 @@
 #include "dd/mobility/linear_glide.h"
 
-#include <array>
+#include "dd/topology/junctions.h"
 
 namespace ddfem
 {
-namespace
-{
-/// Normals closer than half a degree count as parallel: planes of one crystal are never that close.
-constexpr double parallel_sine = 1e-2;
-
-/// Orthonormal basis of the forbidden directions, grown one normal at a time.
-class ForbiddenDirections
-{
-public:
-  void add(const Vec3 &normal)
-  {
-    if (count == 3)
-      return;
-    Vec3 r = normal;
-    for (std::size_t k = 0; k < count; ++k)
-      r -= r.dot(basis[k]) * basis[k];
-    if (r.norm() > parallel_sine)
-      basis[count++] = r.normalized();
-  }
-
-  Mat3 projector() const
-  {
-    if (count == 3)
-      return Mat3::Zero();
-    Mat3 p = Mat3::Identity();
-    for (std::size_t k = 0; k < count; ++k)
-      p -= basis[k] * basis[k].transpose();
-    return p;
-  }
-
-private:
-  std::array<Vec3, 3> basis;
-  std::size_t count = 0;
-};
-} // namespace
-
 Mat3 glide_projector(const Network &network, std::span<const SegmentIndex> arms)
 {
-  ForbiddenDirections forbidden;
-  for (const SegmentIndex s : arms)
+  // Nearly every node has two arms on one plane.
+  if (arms.size() == 2 && network.plane(arms[0]).is_valid() && network.plane(arms[0]) == network.plane(arms[1]))
   {
-    if (!network.plane(s).is_valid())
-      return Mat3::Zero();
-    forbidden.add(network.normal(s));
+    const Vec3 n = network.normal(arms[0]);
+    return Mat3::Identity() - n * n.transpose();
   }
-  return forbidden.projector();
+  std::vector<ArmConstraint> constraints;
+  constraints.reserve(arms.size());
+  for (const SegmentIndex s : arms)
+    constraints.push_back(arm_constraint(network, s));
+  return free_directions(constraints);
 }
 
 Mat3 glide_projector(const Network &network, const NodeIndex i, const GrainShape *shape)
@@ -61,6 +28,7 @@ Mat3 glide_projector(const Network &network, const NodeIndex i, const GrainShape
     return in_planes;
   // What the glide planes leave of the face's normal is forbidden as well.
   const Vec3 normal = in_planes * shape->outward_normal(network.position(i));
+  constexpr double parallel_sine = 1e-2;
   if (normal.norm() < parallel_sine)
     return in_planes;
   return in_planes - normal * normal.transpose() / normal.squaredNorm();
