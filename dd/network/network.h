@@ -5,6 +5,7 @@
 #include "dd/network/glide_plane.h"
 #include "dd/network/index_lists.h"
 
+#include <algorithm>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -244,13 +245,22 @@ private:
 
 template <class Index, class F> void Network::parallel_for(std::span<const Index> range, F &&f)
 {
-  std::exception_ptr error; // an exception must not leave the parallel region
+  // Without gaps, which is the case after clean(), the list of indices need not be read.
+  const bool is_dense = !range.empty() && range.back().value + std::size_t(1) == range.size();
+  constexpr std::size_t block = 1024; // an exception must not leave the parallel region; caught once per block
+  std::exception_ptr error;
 #pragma omp parallel for schedule(static)
-  for (std::size_t k = 0; k < range.size(); ++k)
+  for (std::size_t begin = 0; begin < range.size(); begin += block)
   {
+    const std::size_t end = std::min(begin + block, range.size());
     try
     {
-      f(range[k]);
+      if (is_dense)
+        for (std::size_t k = begin; k < end; ++k)
+          f(Index{static_cast<std::uint32_t>(k)});
+      else
+        for (std::size_t k = begin; k < end; ++k)
+          f(range[k]);
     }
     catch (...)
     {

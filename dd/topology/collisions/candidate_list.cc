@@ -203,7 +203,7 @@ void CandidateList::rebuild(const Network &network, std::span<const Vec3> displa
   period_ = network.period();
   n_cleans_ = network.n_cleans();
   n_live_ = network.n_segments();
-  radius_ = radius;
+  radius_ = -1; // outdated until all is well
   const std::span<const NodeIndex> nodes = network.nodes();
   const std::span<const SegmentIndex> segments = network.segments();
   const double usual_displacement =
@@ -217,6 +217,7 @@ void CandidateList::rebuild(const Network &network, std::span<const Vec3> displa
 
   references_.resize(network.node_capacity());
   network.for_each_node([&](NodeIndex i) { set_reference(network, i, displacement); });
+  radius_ = radius;
   number_.assign(network.segment_capacity(), 0);
   n_entered_ = 0;
   const std::vector<SegmentIndex> unusual = fill_grid(network);

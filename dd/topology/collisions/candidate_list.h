@@ -35,16 +35,22 @@ struct CandidateStatistics
 /// Every segment is covered by two spheres about its quarter points (Durocher, thesis, Bordeaux 2018, section III.4.1.2),
 /// sorted by the Morton index of their cell in a uniform grid. Two segments are candidates if spheres of theirs come
 /// within radius + skin at the reference positions of their nodes. Before each step update() compares where the nodes will
-/// be at its end with the reference positions: the list is rebuilt only if some node is farther than skin/2 from its
-/// reference, and is then valid for the whole step. Segments that topology has inserted since are added one by one,
-/// with the present position as the reference of their new nodes; those that have gone are skipped. The skin is chosen to
-/// minimise the number of elementary operations per step (deterministic: counted, not timed).
+/// be at its end with the reference positions: while all nodes are within skin/2 of them, the list is valid for the whole
+/// step. Segments that topology has inserted since are added one by one, with the present position as the reference of
+/// their new nodes; those that have gone are skipped. Segments with a node beyond skin/2 are added anew, too, with room
+/// for three steps of a node that is faster than the skin allows: a few racing nodes cost neither a build nor a wide skin
+/// for all. When an eighth of the segments has been added, everything is rebuilt. The skin is chosen to minimise the
+/// number of elementary operations per step (deterministic: counted, not timed), see SkinTuner.
+///
+/// A list belongs to one network; after an assignment to the network start with a new list. It uses threads; the results
+/// do not depend on how many.
 class CandidateList
 {
 public:
   /// Makes the list cover everything that can happen in the coming step: pairs() then contains every pair of segments
   /// without a common node that comes within @p radius (nm) while each node moves straight, at any pace, by at most
-  /// @p displacement (nm, by NodeIndex::value, shorter arrays count as zero). Rebuilds after Network::clean().
+  /// @p displacement (nm, by NodeIndex::value, shorter arrays count as zero). Rebuilds after Network::clean(). Throws
+  /// std::invalid_argument if a position or displacement is not finite.
   void update(const Network &network, std::span<const Vec3> displacement, double radius);
 
   /// Pairs of live segments, in increasing order of the persistent ids (first, second); each pair once.

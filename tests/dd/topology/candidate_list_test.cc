@@ -264,12 +264,34 @@ TEST(CandidateList, IsRebuiltOnlyWhenNodesLeaveTheirSkin)
   EXPECT_EQ(list.statistics().builds, 4U);
 }
 
+TEST(CandidateList, FollowsIndicesThatCleaningHasExchanged)
+{
+  Network network;
+  for (const double z : {0.2, 0.0}) // nearer to each other than the skin is wide: by position they cannot be told apart
+  {
+    const NodeIndex a = network.insert({Vec3(0, 0, z)}), b = network.insert({Vec3(10, 0, z)});
+    network.insert(Segment{a, b, Vec3::UnitX(), {}});
+  }
+  CandidateList list;
+  list.update(network, {}, 1);
+  network.clean();
+  ASSERT_EQ(network.id(SegmentIndex{0}), 1U) << "not exchanged";
+  list.update(network, {}, 1);
+  expect_sound(network, list, 10);
+  EXPECT_EQ(list.pairs().size(), 1U);
+}
+
 TEST(CandidateList, SaysWhichNodeHasNoFinitePosition)
 {
   RandomLines sample(5, 3, 5, 100, Vec3::Zero());
   sample.draw_motion(1, 10);
   sample.displacement[4][1] = NAN;
   CandidateList list;
+  EXPECT_THROW(list.update(sample.network, sample.displacement, 1), std::invalid_argument);
+  sample.displacement[4][1] = 0;
+  list.update(sample.network, sample.displacement, 1);
+  EXPECT_EQ(list.statistics().builds, 2U) << "goes on with a list that was left half built";
+  sample.displacement[3][2] = INFINITY;
   EXPECT_THROW(list.update(sample.network, sample.displacement, 1), std::invalid_argument);
 }
 
