@@ -176,7 +176,7 @@ public:
   std::span<const SegmentIndex> segments() const { return live_segments_.view(segment_alive_); }
   // The traversals visit every live object once, threaded, in no particular order. What they compute is independent of
   // the number of threads as long as f writes to the entries of the object it is given only. An exception that f throws
-  // is thrown again after the traversal (one of them if there are several).
+  // is thrown again after the traversal (one of them if there are several); some objects have not been visited then.
   /// Threaded: f(NodeIndex).
   template <class F> void for_each_node(F &&f) const;
   /// Threaded: f(SegmentIndex, NodeIndex start, NodeIndex end).

@@ -128,19 +128,7 @@ void CandidateList::update(const Network &network, std::span<const Vec3> displac
   const bool died = live.size() - n_born != n_live_;
   n_live_ = live.size();
   if (died || !fresh.empty())
-  {
-    std::vector<std::uint8_t> renewed(fresh.size() > n_born ? number_.size() : 0, 0);
-    if (!renewed.empty())
-      for (const SegmentIndex s : fresh)
-        renewed[s.value] = 1;
-    std::erase_if(pairs_,
-                  [&](const CandidatePair &p)
-                  {
-                    return !network.contains(p.first) || !network.contains(p.second) ||
-                           (!renewed.empty() && (renewed[p.first.value] != 0 || renewed[p.second.value] != 0));
-                  });
-    insert(network, fresh);
-  }
+    enter(network, fresh);
 }
 
 bool CandidateList::is_outdated(const Network &network, double radius) const
@@ -224,7 +212,7 @@ void CandidateList::rebuild(const Network &network, std::span<const Vec3> displa
   inserted_.reset(map_);
   in_step_.reset(map_);
   find_pairs_of_grid(network);
-  insert(network, unusual);
+  enter(network, unusual);
 }
 
 std::vector<SegmentIndex> CandidateList::fill_grid(const Network &network)
@@ -324,10 +312,8 @@ std::vector<CandidatePair> CandidateList::pairs_of_inserted(const Network &netwo
   return pairs;
 }
 
-void CandidateList::insert(const Network &network, const std::vector<SegmentIndex> &segments)
+void CandidateList::enter(const Network &network, const std::vector<SegmentIndex> &segments)
 {
-  if (segments.empty())
-    return;
   const std::uint32_t first = n_entered_ + 1;
   for (const SegmentIndex s : segments)
   {
@@ -335,6 +321,8 @@ void CandidateList::insert(const Network &network, const std::vector<SegmentInde
     for (const Sphere &sphere : spheres_of(network, s))
       inserted_.add(sphere, n_entered_);
   }
+  const auto is_void = [&](SegmentIndex s) { return !network.contains(s) || number_[s.value] >= first; };
+  std::erase_if(pairs_, [&](const CandidatePair &p) { return is_void(p.first) || is_void(p.second); });
   std::vector<std::vector<CandidatePair>> found(static_cast<std::size_t>(omp_get_max_threads()));
   std::size_t tests = 0;
 #pragma omp parallel for schedule(static) reduction(+ : tests) if (segments.size() > least_entered_for_threads)

@@ -32,18 +32,18 @@ struct CandidateStatistics
 
 /// Candidate pairs by a Verlet list with a dynamic test.
 ///
-/// Every segment is covered by two spheres about its quarter points (Durocher, thesis, Bordeaux 2018, section III.4.1.2),
-/// sorted by the Morton index of their cell in a uniform grid. Two segments are candidates if spheres of theirs come
-/// within radius + skin at the reference positions of their nodes. Before each step update() compares where the nodes will
-/// be at its end with the reference positions: while all nodes are within skin/2 of them, the list is valid for the whole
-/// step. Segments that topology has inserted since are added one by one, with the present position as the reference of
-/// their new nodes; those that have gone are skipped. Segments with a node beyond skin/2 are added anew, too, with room
-/// for three steps of a node that is faster than the skin allows: a few racing nodes cost neither a build nor a wide skin
-/// for all. When an eighth of the segments has been added, everything is rebuilt. The skin is chosen to minimise the
-/// number of elementary operations per step (deterministic: counted, not timed), see SkinTuner.
+/// Every segment is covered by two spheres about its quarter points (Durocher, thesis, Bordeaux 2018, section
+/// III.4.1.2), sorted by the Morton index of their cell in a uniform grid. Two segments are candidates if spheres of
+/// theirs come within radius + skin at the reference positions of their nodes. Before each step update() compares where
+/// the nodes will be at its end with the reference positions: while all nodes are within skin/2 of them, the list is
+/// valid for the whole step. Segments that topology has inserted since are added one by one, with the present position
+/// as the reference of their new nodes; those that have gone are skipped. Segments with a node beyond skin/2 are added
+/// anew, too, with room for three steps of a node that is faster than the skin allows: a few racing nodes cost neither
+/// a build nor a wide skin for all. When an eighth of the segments has been added, everything is rebuilt. The skin is
+/// chosen to minimise the number of elementary operations per step (deterministic: counted, not timed), see SkinTuner.
 ///
-/// A list belongs to one network; after an assignment to the network start with a new list. It uses threads; the results
-/// do not depend on how many.
+/// A list belongs to one network; after an assignment to the network start with a new list. It uses threads; the
+/// results do not depend on how many.
 class CandidateList
 {
 public:
@@ -83,7 +83,8 @@ private:
   void find_pairs_of_grid(const Network &network);
   std::vector<CandidatePair> pairs_of_inserted(const Network &network, SegmentIndex s, std::uint32_t first,
                                                std::size_t &tests) const;
-  void insert(const Network &network, const std::vector<SegmentIndex> &segments);
+  /// Drops the pairs of segments that have gone, and enters @p segments, new ones or known ones with new references.
+  void enter(const Network &network, const std::vector<SegmentIndex> &segments);
   /// Whether a sphere entered with this number is the present one of its segment.
   bool is_current(const Network &network, SegmentIndex s, std::uint32_t number) const
   {

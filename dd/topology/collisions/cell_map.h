@@ -13,8 +13,8 @@
 namespace ddfem
 {
 /// Which cell of a uniform grid a point lies in. Along a periodic axis the cells divide the period and are counted from
-/// the origin of the sample frame; along a free axis they start at the lowest point, and points outside the grid count as
-/// in its outermost cell (such a projection never takes two points farther apart: neighbours stay neighbours).
+/// the origin of the sample frame; along a free axis they start at the lowest point, and points outside the grid count
+/// as in its outermost cell (such a projection never takes two points farther apart: neighbours stay neighbours).
 class CellMap
 {
 public:
@@ -57,7 +57,8 @@ public:
     return x * x + y * y + z * z;
   }
 
-  /// f(key) for half of the cells that have a corner in common with @p c: of every two such cells, one visits the other.
+  /// f(key) for half of the cells that have a corner in common with @p c: of every two such cells, one visits the
+  /// other.
   template <class F> void for_each_later_neighbour(const Cell &c, F &&f) const
   {
     const std::array<Steps, 3> steps{steps_along(0, c[0]), steps_along(1, c[1]), steps_along(2, c[2])};

@@ -9,10 +9,11 @@ namespace ddfem
 /// Chooses the skin of a list of candidate pairs: a wide skin makes builds rare, but each of them and the list longer.
 /// Minimised is the cost of a step,
 ///   (build_cost n + test_cost T(skin) + enter_cost m) / steps(skin) + pair_cost P(skin)
-/// for n segments, T sphere tests of a build, m segments entered between two builds, and P pairs. P is known from the last build for smaller skins (a histogram of
-/// the distances found) and continued as a power of the reach for larger ones; T grows as the square of the cell width
-/// (lines in space: between that of one line and that of filled space); steps = skin / (2 drift), where the drift
-/// per step is what the nodes show. Counts, no times: the choice is the same on every machine and with any number of threads.
+/// for n segments, T sphere tests of a build, m segments entered between two builds, and P pairs. P is known from the
+/// last build for smaller skins (a histogram of the distances found) and continued as a power of the reach for larger
+/// ones; T grows as the square of the cell width (lines in space: between that of one line and that of filled space);
+/// steps = skin / (2 drift), where the drift per step is what the nodes show. Counts, no times: the choice is the same
+/// on every machine and with any number of threads.
 class SkinTuner
 {
 public:
@@ -37,8 +38,9 @@ public:
   };
   void record(const Build &build) { last_ = build; }
 
-  /// A list has served @p steps steps, in which @p entered segments were entered. @p expired: nodes have left their skin
-  /// (otherwise it was given up for another reason). @p displacement: of typical fast nodes in the coming step, nm.
+  /// A list has served @p steps steps, in which @p entered segments were entered. @p expired: nodes have left their
+  /// skin (otherwise it was given up for another reason). @p displacement: of typical fast nodes in the coming step,
+  /// nm.
   void retire(std::size_t steps, std::size_t entered, bool expired, double displacement);
 
   /// Skin (nm) for the next list, enough for at least one step of @p displacement. @p reach as in Build.

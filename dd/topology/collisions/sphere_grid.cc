@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace ddfem
 {
@@ -18,8 +19,8 @@ struct Entry
 constexpr unsigned digit_bits = 11;
 constexpr std::size_t n_digits = 1U << digit_bits;
 
-/// One pass of a stable radix sort by the bits of the key from @p shift on. Every thread sorts a part of its own to places
-/// that the parts before it leave free: the result does not depend on the number of threads.
+/// One pass of a stable radix sort by the bits of the key from @p shift on. Every thread sorts a part of its own to
+/// places that the parts before it leave free: the result does not depend on the number of threads.
 void sort_by_digit(const std::vector<Entry> &from, std::vector<Entry> &to, unsigned shift)
 {
   const auto digit = [shift](const Entry &e) { return (e.key >> shift) & (n_digits - 1); };

@@ -31,9 +31,9 @@ inline std::size_t hash_of_neighbourhood(std::uint64_t key, unsigned near, unsig
   return (far << near | (key & ((std::uint64_t(1) << near) - 1))) & ((std::uint64_t(1) << bits) - 1);
 }
 
-/// Spheres sorted along the Morton curve of their cells, two per segment. Occupied cells are kept in blocks of 4 x 4 x 4,
-/// consecutive on the curve, with a bit per cell; the blocks are found by hashing. Neighbouring cells are so found with
-/// few visits to the table, and memory is proportional to the number of spheres however empty the space is.
+/// Spheres sorted along the Morton curve of their cells, two per segment. Occupied cells are kept in blocks of 4 x 4 x
+/// 4, consecutive on the curve, with a bit per cell; the blocks are found by hashing. Neighbouring cells are so found
+/// with few visits to the table, and memory is proportional to the number of spheres however empty the space is.
 class SphereGrid
 {
 public:

@@ -9,8 +9,8 @@
 
 namespace ddfem
 {
-/// Spheres added one by one, in chains of those whose cells have the same hash value. For the few that a SphereGrid does
-/// not hold: slower by a factor, but nothing is sorted. Each carries a number of the caller's.
+/// Spheres added one by one, in chains of those whose cells have the same hash value. For the few that a SphereGrid
+/// does not hold: slower by a factor, but nothing is sorted. Each carries a number of the caller's.
 class SphereTable
 {
 public:
