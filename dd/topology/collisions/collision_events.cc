@@ -91,7 +91,8 @@ void detect_collapse(const TopologyContext &c, const SegmentIndex s, const doubl
 /// f(k, found) for all k < n, threaded; the results are appended to @p found in the order of events.
 template <class F> void collect(const std::size_t n, std::vector<CollisionEvent> &found, F &&f)
 {
-#pragma omp parallel
+  constexpr std::size_t worth_a_team = 2000; // waking threads takes as long as hundreds of contacts
+#pragma omp parallel if (n > worth_a_team)
   {
     std::vector<CollisionEvent> mine;
 #pragma omp for schedule(static) nowait

@@ -201,7 +201,8 @@ void CollisionHandler::announce(const Change &change)
 void CollisionHandler::detect_again(const std::vector<Change> &changes)
 {
   std::vector<std::vector<CollisionEvent>> found(changes.size());
-#pragma omp parallel for schedule(dynamic, 1)
+  constexpr std::size_t worth_a_team = 8;
+#pragma omp parallel for schedule(dynamic, 1) if (changes.size() > worth_a_team)
   for (std::size_t k = 0; k < changes.size(); ++k)
     detect_around(context, candidates, changes[k].node, changes[k].time, found[k]);
   for (const auto &events : found)
