@@ -264,6 +264,20 @@ TEST(CandidateList, IsRebuiltOnlyWhenNodesLeaveTheirSkin)
   EXPECT_EQ(list.statistics().builds, 4U);
 }
 
+TEST(CandidateList, DoesNotMindNodesThatMoveToAnotherImage)
+{
+  RandomLines sample(3, 30, 20, 300, Vec3(300, 0, 250));
+  CandidateList list;
+  list.update(sample.network, {}, 1);
+  const std::set<IndexPair> before = as_set(list);
+  for (const NodeIndex i : sample.network.nodes())
+    sample.network.set_position(i, sample.image(sample.network.position(i)));
+  list.update(sample.network, {}, 1);
+  EXPECT_EQ(list.statistics().builds, 1U);
+  EXPECT_EQ(list.statistics().insertions, 0U);
+  EXPECT_EQ(as_set(list), before);
+}
+
 TEST(CandidateList, FollowsIndicesThatCleaningHasExchanged)
 {
   Network network;
@@ -279,6 +293,27 @@ TEST(CandidateList, FollowsIndicesThatCleaningHasExchanged)
   list.update(network, {}, 1);
   expect_sound(network, list, 10);
   EXPECT_EQ(list.pairs().size(), 1U);
+}
+
+TEST(CandidateList, ForgetsTheBallsOfAStepWithIt)
+{
+  Network network;
+  const NodeIndex a = network.insert({Vec3(0, 0, 0)}), b = network.insert({Vec3(10, 0, 0)});
+  const SegmentIndex s = network.insert(Segment{a, b, Vec3::UnitX(), {}});
+  const Vec3 far(500, 0, 0);
+  const auto is_near = [&](const CandidateList &list)
+  {
+    std::vector<SegmentIndex> found;
+    list.neighbours(network, far, 1, 1, found);
+    return !found.empty();
+  };
+  CandidateList list;
+  list.update(network, {}, 1);
+  EXPECT_FALSE(is_near(list));
+  list.insert_in_step(network, s, far + Vec3(0, 3, 0), 1.5);
+  EXPECT_TRUE(is_near(list));
+  list.update(network, {}, 1);
+  EXPECT_FALSE(is_near(list));
 }
 
 TEST(CandidateList, SaysWhichNodeHasNoFinitePosition)
