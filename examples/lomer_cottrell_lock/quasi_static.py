@@ -66,8 +66,8 @@ def rule(core, h):
 class Lock:
     """Degrees of freedom: positions of the triple nodes along E, then displacements of the arms' nodes."""
 
-    def __init__(self, mu, nu, b, a, length, pieces, shortest):
-        self.mu, self.nu, self.a = mu, nu, a
+    def __init__(self, mu, nu, b, a, length, pieces, shortest, local):
+        self.mu, self.nu, self.a, self.local = mu, nu, a, local
         h = b / 2 ** 0.5
         b1, b2 = h * np.array([0, -1, -1]), h * np.array([-1, 0, 1])
         self.bj = b1 + b2
@@ -114,7 +114,8 @@ class Lock:
                 first += len(u)
                 force[m] += ((1 - u)[:, None] * f).sum(0)
                 force[m + 1] += (u[:, None] * f).sum(0)
-            residual[side] += self.u[::-1] @ (force @ E)   # the whole arm follows its triple node
+            # Virtual motion of a triple node: alone, as in a code that moves nodes, or with the whole arm.
+            residual[side] += (force[-1] if self.local else self.u[::-1] @ force) @ E
             residual[2 + k * self.n:2 + (k + 1) * self.n] = (force[1:-1] @ across)[::-1]
         return residual
 
@@ -163,10 +164,11 @@ if __name__ == '__main__':
     parser.add_argument('--pieces', type=int, default=16)
     parser.add_argument('--shortest', type=float, default=3.0, help='segment at the triple node, nm (default 3)')
     parser.add_argument('--core', type=float, default=0.28635, help='core radius, nm (default b)')
-    parser.add_argument('--stress', type=float, nargs='*', default=[0, 50, 100, 150, 160, 170, 180, 190, 200])
+    parser.add_argument('--local', action='store_true', help='balance at the triple node alone, not of whole arms')
+    parser.add_argument('--stress', type=float, nargs='*', default=[0, 50, 100, 150, 160, 170])
     arguments = parser.parse_args()
     screw_check()
-    lock = Lock(26272.0, 0.34477, 0.28635, arguments.core, 200.0, arguments.pieces, arguments.shortest)
+    lock = Lock(26272.0, 0.344754, 0.28635, arguments.core, 200.0, arguments.pieces, arguments.shortest, arguments.local)
     for tau in arguments.stress:
         ok = lock.solve(tau)
         print(f'tau {tau:6.1f} MPa: ' + (f'junction {lock.junction():.3f} nm' if ok else 'no equilibrium'), flush=True)

@@ -190,9 +190,16 @@ TEST(NodeSplitting, RepellingLinesThatTouchComeApartWithoutAJunction)
 
 TEST(NodeSplitting, TheTrialFeelsTheForcesOfTheNetworkThatItMakes)
 {
-  // Nothing but the arms exists, so that the local forces are all forces.
+  // Nothing but the arms and the segments at their far ends exists, so that the local forces are all forces.
   CrossingFixture f;
   const auto i = crossing(f, fcc, "B4", "C1", -1, {20, -20});
+  for (std::size_t k = 1; k < 5; ++k)
+  {
+    const Segment arm = f.network.get(f.network.connected_segments(i[k])[0]);
+    const NodeIndex end = f.network.insert(Node{1.75 * f.network.position(i[k]), NodeConstraint::pinned});
+    f.network.insert(arm.start == i[k] ? Segment{end, i[k], arm.burgers, arm.plane}
+                                       : Segment{i[k], end, arm.burgers, arm.plane});
+  }
   SymTensor applied;
   applied << 100, -50, 20, 30, 200, -70;
   ForceEnvironment e;
@@ -225,6 +232,46 @@ TEST(NodeSplitting, TheTrialFeelsTheForcesOfTheNetworkThatItMakes)
   EXPECT_LT((motion[1].force - forces[j.value]).norm(), 1e-6 * forces[j.value].norm());
   EXPECT_LT((motion[0].velocity - velocity[i[0].value]).norm(), 1e-6 * velocity[i[0].value].norm());
   EXPECT_LT((motion[1].velocity - velocity[j.value]).norm(), 1e-6 * velocity[j.value].norm());
+}
+
+TEST(NodeSplitting, TheTrialKeepsTheForcesOfFarLinesOnTheArms)
+{
+  // A strong line 80 nm away; what it adds to the forces on the two parts is that of the network after the split to the
+  // order of shift/arm length: it is not computed anew, and not on the junction.
+  const auto forces_on_parts = [](const double strength)
+  {
+    CrossingFixture f;
+    const auto i = crossing(f, fcc, "B4", "C1", -1, {20, -20});
+    if (strength > 0)
+    {
+      const Vec3 middle(20, 30, 70);
+      add_line(f.network, {middle - Vec3(200, 0, 0), middle, middle + Vec3(200, 0, 0)}, strength * Vec3(0, 0.2, 0.1),
+               {}, false, NodeConstraint::pinned);
+    }
+    SplittingModel model{aluminium, aluminium.a, drag};
+    const NodeNeighbourhood node(f.network, i[0], model,
+                                 compute_nodal_forces(f.network, force_settings, ForceEnvironment{}, MPI_COMM_SELF));
+    const Vec3 shift = 0.5 * Vec3(1, -1, 0).normalized();
+    TrialSplit trial{
+        {{0, 2}, {1, 3}}, {shift, -shift}, -(node.arms()[0].burgers + node.arms()[2].burgers), Vec3::Zero()};
+    const auto motion = node.motion(trial);
+    auto c = f.crossing_context();
+    const std::vector<SegmentIndex> second{f.network.connected_segments(i[0])[1],
+                                           f.network.connected_segments(i[0])[3]};
+    const NodeIndex j = detach_arms(c, i[0], second, NodeConstraint::free);
+    f.network.set_position(i[0], trial.shift[0]);
+    f.network.set_position(j, trial.shift[1]);
+    f.network.insert(Segment{i[0], j, trial.burgers, {}});
+    const auto real = compute_nodal_forces(f.network, force_settings, ForceEnvironment{}, MPI_COMM_SELF).total;
+    return std::array<Vec3, 4>{motion[0].force, motion[1].force, real[i[0].value], real[j.value]};
+  };
+  const auto with = forces_on_parts(20), without = forces_on_parts(0);
+  for (std::size_t k = 0; k < 2; ++k)
+  {
+    const Vec3 expected = with[k + 2] - without[k + 2];
+    EXPECT_GT(expected.norm(), 100);
+    EXPECT_LT((with[k] - without[k] - expected).norm(), 0.1 * expected.norm());
+  }
 }
 
 TEST(NodeSplitting, ForcesAreComputedOnceForManyNodesAndNotAtAllForNone)
