@@ -7,9 +7,9 @@
 
 namespace ddfem
 {
-/// What one arm of a node forbids it. A glissile arm keeps the node in its glide plane; a sessile arm, which has none,
-/// lets the node move along the arm only: there it makes the line longer or shorter without any climb, as at the ends of a
-/// Lomer junction, which zips and unzips along the intersection of the glide planes of the two lines.
+/// What one arm of a node forbids it. A glissile arm keeps the node in its glide plane; a sessile arm, which has
+/// none, lets the node move along the arm only: there it makes the line longer or shorter without any climb, as at
+/// the ends of a Lomer junction, which zips and unzips along the intersection of the glide planes of the two lines.
 struct ArmConstraint
 {
   Vec3 normal = Vec3::Zero(); ///< unit normal of the glide plane; zero for a sessile arm
@@ -21,8 +21,9 @@ struct ArmConstraint
 /// The constraint of arm @p s.
 ArmConstraint arm_constraint(const Network &network, SegmentIndex s);
 
-/// Orthogonal projector on the directions in which a node with these arms can move: the intersection of their glide planes,
-/// and of the lines of sessile arms. Zero if nothing is left, and for a node with sessile arms only, inside a sessile line.
+/// Orthogonal projector on the directions in which a node with these arms can move: the intersection of their glide
+/// planes, and of the lines of sessile arms. Zero if nothing is left, and for a node with sessile arms only, inside a
+/// sessile line.
 Mat3 free_directions(std::span<const ArmConstraint> arms);
 
 /// The same for a free node of the network.

@@ -29,7 +29,7 @@ struct SplittingModel
 /// The node cut in two: where its parts are, and which arms each has.
 struct TrialSplit
 {
-  std::vector<std::size_t> arms[2];                      ///< numbers of the arms of each part
+  std::array<std::vector<std::size_t>, 2> arms;          ///< numbers of the arms of each part
   std::array<Vec3, 2> shift{Vec3::Zero(), Vec3::Zero()}; ///< of each part from the node, nm
   Vec3 burgers = Vec3::Zero();                           ///< of the junction from part 0 to part 1; zero: none
   Vec3 junction_normal = Vec3::Zero();                   ///< of its glide plane; zero: sessile
@@ -43,9 +43,9 @@ struct NodeMotion
   double power() const { return force.dot(velocity); } ///< MPa nm^3/ns
 };
 
-/// The neighbourhood of a node, positions relative to it. The forces of the arms and of the segments at their far ends on each
-/// arm are computed exactly for every trial; everything else (far segments, images, correction) is what the whole node
-/// feels and stays with each arm.
+/// The neighbourhood of a node, positions relative to it. The forces of the arms and of the segments at their far
+/// ends on each arm are computed exactly for every trial; everything else (far segments, images, correction) is what
+/// the whole node feels and stays with each arm.
 class NodeNeighbourhood
 {
 public:

@@ -67,8 +67,8 @@ Partition make_partition(const NodeNeighbourhood &node, const std::size_t mask)
   return p;
 }
 
-/// Directions worth trying, of any length: as the forces on the unsplit node pull the parts; along the only line that both
-/// can take, or one of them; towards their own arms; across two lines that touch.
+/// Directions worth trying, of any length: as the forces on the unsplit node pull the parts; along the only line that
+/// both can take, or one of them; towards their own arms; across two lines that touch.
 std::vector<Shifts> candidate_shifts(const NodeNeighbourhood &node, const Partition &p)
 {
   std::vector<Shifts> found{{p.merged[0].velocity, p.merged[1].velocity}};
@@ -96,8 +96,8 @@ std::vector<Shifts> candidate_shifts(const NodeNeighbourhood &node, const Partit
   return found;
 }
 
-/// Sets the parts apart along @p shifts, scaled to the separation, and looks up the plane of the junction. False if they
-/// would not part, or leave their planes or the line of a sessile junction.
+/// Sets the parts apart along @p shifts, scaled to the separation, and looks up the plane of the junction. False if
+/// they would not part, or leave their planes or the line of a sessile junction.
 bool set_apart(const NodeNeighbourhood &node, const TrialSettings &settings, const Shifts &shifts, TrialSplit &split)
 {
   const double apart = (shifts[0] - shifts[1]).norm();

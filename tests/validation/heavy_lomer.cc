@@ -81,7 +81,8 @@ private:
   Vec3 product;
 };
 
-/// The lines of the thesis, with the overlines of its table IV.2 put such that line and Burgers vector lie in the planes.
+/// The lines of the thesis, with the overlines of its table IV.2 put such that line and Burgers vector lie in the
+/// planes.
 std::array<Line, 2> thesis_lines()
 {
   const double h = aluminium.burgers_magnitude / std::numbers::sqrt2;
@@ -143,8 +144,8 @@ bool holds(const double tau)
   return lock.junction() > 0;
 }
 
-/// Pull of an arm of line energy mu b^2 (1 - nu cos^2 theta)/(4 pi (1-nu)) ln on its node along the common line e of the planes,
-/// in units of mu/(4 pi) ln; phi is the angle of the arm from e.
+/// Pull of an arm of line energy mu b^2 (1 - nu cos^2 theta)/(4 pi (1-nu)) ln on its node along the common line e of
+/// the planes, in units of mu/(4 pi) ln; phi is the angle of the arm from e.
 double line_tension_pull(const Vec3 &b, const Vec3 &n, const Vec3 &e, const double phi)
 {
   const Vec3 t = std::cos(phi) * e + std::sin(phi) * n.cross(e), dt = -std::sin(phi) * e + std::cos(phi) * n.cross(e);
@@ -153,8 +154,8 @@ double line_tension_pull(const Vec3 &b, const Vec3 &n, const Vec3 &e, const doub
          (1 - nu);
 }
 
-/// Length of the junction of two lines at angles @p phi from e by balance of orientation-dependent line tensions (Dupuy & Fivel,
-/// Acta Mater. 50 (2002) 4873).
+/// Length of the junction of two lines at angles @p phi from e by balance of orientation-dependent line tensions
+/// (Dupuy & Fivel, Acta Mater. 50 (2002) 4873).
 double line_tension_junction(const std::array<Line, 2> &lines, const Vec3 &e, const std::array<double, 2> &phi)
 {
   const Vec3 b = lines[0].burgers + lines[1].burgers;

@@ -39,7 +39,8 @@ inline void move_and_collide(TopologyContext &context)
   }
 }
 
-/// The glide plane of a product line: the slip plane that holds its Burgers vector and its direction, if there is one.
+/// The glide plane of a product line: the slip plane that holds its Burgers vector and its direction, if there is
+/// one.
 inline ProductPlane slip_plane_of_product(const SlipSystems &systems)
 {
   return [systems](Network &network, const Vec3 &xi, const Vec3 &b, const Vec3 &point) -> PlaneIndex
@@ -54,7 +55,8 @@ inline ProductPlane slip_plane_of_product(const SlipSystems &systems)
   };
 }
 
-/// Takes the motion along the line off @p velocity of a discretisation node: it means nothing and shifts nodes for ever.
+/// Takes the motion along the line off @p velocity of a discretisation node: it means nothing and shifts nodes for
+/// ever.
 inline Vec3 across_line(const Network &network, const NodeIndex i, const Vec3 &velocity)
 {
   const auto arms = network.connected_segments(i);
@@ -67,8 +69,8 @@ inline Vec3 across_line(const Network &network, const NodeIndex i, const Vec3 &v
   return velocity - chord * (chord.dot(velocity) / chord.squaredNorm());
 }
 
-/// Local glide velocities; the nodes at the ends of sessile junctions move along them. @p slide: discretisation nodes follow
-/// the force along the line too.
+/// Local glide velocities; the nodes at the ends of sessile junctions move along them. @p slide: discretisation nodes
+/// follow the force along the line too.
 inline std::vector<Vec3> velocities_with_junctions(const Network &network, const std::vector<Vec3> &force,
                                                    const LinearGlide &law, const bool slide)
 {

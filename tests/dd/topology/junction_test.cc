@@ -1,6 +1,6 @@
-// Junctions of fcc: two pinned straight lines of 200 nm that cross at their mid-points relax. Classes of reaction and what
-// is expected of them: Madec, Devincre & Kubin, Phys. Rev. Lett. 89 (2002) 255508; Wickham, Schwarz & Stoelken, Phys. Rev. Lett.
-// 83 (1999) 4574.
+// Junctions of fcc: two pinned straight lines of 200 nm that cross at their mid-points relax. Classes of reaction and
+// what is expected of them: Madec, Devincre & Kubin, Phys. Rev. Lett. 89 (2002) 255508; Wickham, Schwarz & Stoelken,
+// Phys. Rev. Lett. 83 (1999) 4574.
 #include "dd/crystal/material.h"
 #include "dd/microstructure/sources.h"
 #include "dislocation_driver.h"
@@ -175,7 +175,8 @@ TEST(Junctions, CollinearLinesAnnihilateAndLeaveTwoBentLines)
   double total = 0;
   for (const SegmentIndex s : p.network.segments())
     total += p.network.length(s);
-  // Left of 400 nm: the shortest way from each of the four ends to e, L/2 sin(30 deg), were the line tension isotropic.
+  // Left of 400 nm: the shortest way from each of the four ends to e, L/2 sin(30 deg), were the line tension
+  // isotropic.
   EXPECT_NEAR(total, length, 0.02 * length);
 }
 

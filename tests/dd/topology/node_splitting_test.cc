@@ -44,8 +44,8 @@ SymTensor shear_xz(const double tau)
   return s;
 }
 
-/// Two lines on the horizontal plane that touch at the origin: V-shaped, as when a source closes. Their directions are
-/// opposite; they are edges near the origin.
+/// Two lines on the horizontal plane that touch at the origin: V-shaped, as when a source closes. Their directions
+/// are opposite; they are edges near the origin.
 std::array<NodeIndex, 9> touching_bulges(TopologyFixture &f, const double half_opening)
 {
   Network &n = f.network;
@@ -68,26 +68,34 @@ std::array<NodeIndex, 9> touching_bulges(TopologyFixture &f, const double half_o
   return i;
 }
 
-/// The end nodes (pinned) that can be reached from @p i along lines.
-std::set<std::uint32_t> pinned_ends(const Network &n, const NodeIndex i)
+/// The nodes that can be reached from @p i along lines, by index.
+std::set<std::uint32_t> connected_nodes(const Network &n, const NodeIndex i)
 {
-  std::set<std::uint32_t> seen{i.value}, ends;
+  std::set<std::uint32_t> seen{i.value};
   std::vector<NodeIndex> open{i};
   while (!open.empty())
   {
     const NodeIndex k = open.back();
     open.pop_back();
-    if (n.constraint(k) == NodeConstraint::pinned)
-      ends.insert(k.value);
     for (const SegmentIndex s : n.connected_segments(k))
       if (seen.insert(n.other_end(s, k).value).second)
         open.push_back(n.other_end(s, k));
   }
+  return seen;
+}
+
+/// The pinned ones among them.
+std::set<std::uint32_t> pinned_ends(const Network &n, const NodeIndex i)
+{
+  std::set<std::uint32_t> ends;
+  for (const std::uint32_t k : connected_nodes(n, i))
+    if (n.constraint(NodeIndex{k}) == NodeConstraint::pinned)
+      ends.insert(k);
   return ends;
 }
 
-/// Two lines that cross at a node at the origin, on the planes of slip systems @p first and @p second, with angles (degrees) from
-/// the common line of the planes. Returns the four arms' far ends, two of each line.
+/// Two lines that cross at a node at the origin, on the planes of slip systems @p first and @p second, with angles
+/// (degrees) from the common line of the planes. Returns the four arms' far ends, two of each line.
 std::array<NodeIndex, 5> crossing(TopologyFixture &f, const SlipSystems &systems, const char *first, const char *second,
                                   const double sign, const std::array<double, 2> &angles)
 {
@@ -236,8 +244,8 @@ TEST(NodeSplitting, TheTrialFeelsTheForcesOfTheNetworkThatItMakes)
 
 TEST(NodeSplitting, TheTrialKeepsTheForcesOfFarLinesOnTheArms)
 {
-  // A strong line 80 nm away; what it adds to the forces on the two parts is that of the network after the split to the
-  // order of shift/arm length: it is not computed anew, and not on the junction.
+  // A strong line 80 nm away; what it adds to the forces on the two parts is that of the network after the split to
+  // the order of shift/arm length: it is not computed anew, and not on the junction.
   const auto forces_on_parts = [](const double strength)
   {
     CrossingFixture f;
@@ -253,7 +261,7 @@ TEST(NodeSplitting, TheTrialKeepsTheForcesOfFarLinesOnTheArms)
                                  compute_nodal_forces(f.network, force_settings, ForceEnvironment{}, MPI_COMM_SELF));
     const Vec3 shift = 0.5 * Vec3(1, -1, 0).normalized();
     TrialSplit trial{
-        {{0, 2}, {1, 3}}, {shift, -shift}, -(node.arms()[0].burgers + node.arms()[2].burgers), Vec3::Zero()};
+        {{{0, 2}, {1, 3}}}, {shift, -shift}, -(node.arms()[0].burgers + node.arms()[2].burgers), Vec3::Zero()};
     const auto motion = node.motion(trial);
     auto c = f.crossing_context();
     const std::vector<SegmentIndex> second{f.network.connected_segments(i[0])[1],
@@ -305,6 +313,32 @@ TEST(FreeDirections, TheEndOfASessileJunctionMovesAlongItAndItsInsideDoesNot)
   // A sessile line that is not in the glide plane of the arm holds the node.
   EXPECT_TRUE(free_directions(std::vector{one, ArmConstraint{Vec3::Zero(), n1}}).isZero(0));
   EXPECT_NEAR(free_directions(std::vector{one, one}).trace(), 2, 1e-12);
+}
+
+TEST(NodeSplitting, AFrankReadSourceClosesIntoALoopAndALine)
+{
+  for (const double character : {0.0, 90.0})
+  {
+    DislocationDriver d({aluminium, aluminium.a, drag, {15, 40, 1, 2}, {0.2, 8, 1, 1e-4, 30}}, fcc);
+    const SlipSystem &s = fcc[*fcc.find("B4")];
+    FrankReadSource source;
+    source.plane = s.plane_miller;
+    source.burgers = s.burgers;
+    source.length = 200;
+    source.character_angle = character;
+    add_frank_read_source(d.network, Orientation{}, source, 30);
+    const NodeIndex end = d.network.nodes().front();
+    ASSERT_EQ(d.network.constraint(end), NodeConstraint::pinned);
+    const ObjectId end_id = d.network.id(end);
+    d.applied = 240 * s.schmid_tensor(); // resolved: 120 MPa
+    const auto reached = [&] { return connected_nodes(d.network, *d.network.find_node(end_id)).size(); };
+    for (int k = 0; k < 1500 && reached() == d.network.n_nodes(); ++k)
+      d.step(1);
+    d.network.check_invariants(1e-5);
+    EXPECT_LT(reached(), d.network.n_nodes()) << "character " << character; // a loop has left
+    // The source is still there, between both ends.
+    EXPECT_EQ(pinned_ends(d.network, *d.network.find_node(end_id)).size(), 2U);
+  }
 }
 
 /// Four sources on four planes through each other in a periodic box.
