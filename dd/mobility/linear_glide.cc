@@ -52,6 +52,18 @@ double nodal_drag(const Network &network, const NodeIndex i, const LinearGlide &
   return drag_of_arms(network, network.connected_segments(i), law);
 }
 
+Vec3 across_line(const Network &network, const NodeIndex i, const Vec3 &velocity)
+{
+  const auto arms = network.connected_segments(i);
+  if (arms.size() != 2 || network.is_physical(i))
+    return velocity;
+  const Vec3 &x = network.position(i);
+  const auto to_neighbour = [&](const SegmentIndex s)
+  { return network.minimum_image(network.position(network.other_end(s, i)) - x); };
+  const Vec3 chord = to_neighbour(arms[0]) - to_neighbour(arms[1]);
+  return velocity - chord * (chord.dot(velocity) / chord.squaredNorm());
+}
+
 std::vector<Vec3> glide_velocities(const Network &network, const std::vector<Vec3> &force, const LinearGlide &law,
                                    const GrainShape *shape)
 {
@@ -61,7 +73,7 @@ std::vector<Vec3> glide_velocities(const Network &network, const std::vector<Vec
       {
         const double drag = nodal_drag(network, i, law);
         if (drag > 0)
-          velocity[i.value] = glide_projector(network, i, shape) * force[i.value] / drag;
+          velocity[i.value] = across_line(network, i, glide_projector(network, i, shape) * force[i.value] / drag);
       });
   return velocity;
 }

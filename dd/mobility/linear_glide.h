@@ -18,7 +18,8 @@ struct LinearGlide
 };
 
 /// Directions in which a node may move: the orthogonal projector on them. Zero for pinned nodes and where the glide
-/// planes of the arms (and the surface, for surface nodes) leave none. An arm without a glide plane is sessile.
+/// planes of the arms (and the surface, for surface nodes) leave none. An arm without a glide plane is sessile and leaves
+/// only its own line.
 Mat3 glide_projector(const Network &network, NodeIndex i, const GrainShape *shape);
 
 /// The same for a free node with these arms only.
@@ -30,7 +31,13 @@ double drag_of_arms(const Network &network, std::span<const SegmentIndex> arms, 
 /// Drag of a node, MPa ns nm.
 double nodal_drag(const Network &network, NodeIndex i, const LinearGlide &law);
 
-/// Local nodal velocities v = P f / (sum over arms of B(theta) L / 2), nm/ns, indexed by NodeIndex::value.
+/// Takes off @p velocity (any unit) of a discretisation node what is parallel to the chord between its neighbours: such a motion
+/// changes nothing but the spacing of the nodes, goes on for ever in equilibrium, and keeps the remeshing busy. Other nodes
+/// keep theirs.
+Vec3 across_line(const Network &network, NodeIndex i, const Vec3 &velocity);
+
+/// Local nodal velocities v = P f / (sum over arms of B(theta) L / 2), nm/ns, indexed by NodeIndex::value; of discretisation
+/// nodes the part across the line.
 /// @p force: nodal forces, MPa nm^2.
 std::vector<Vec3> glide_velocities(const Network &network, const std::vector<Vec3> &force, const LinearGlide &law,
                                    const GrainShape *shape);
