@@ -1,6 +1,6 @@
 #include "dd/mobility/linear_glide.h"
 
-#include "dd/topology/junctions.h"
+#include "dd/mobility/glide_constraints.h"
 
 namespace ddfem
 {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dd/forces/nodal_forces.h"
-#include "dd/topology/junctions_trial.h"
+#include "dd/topology/split_trial.h"
 #include "dd/topology/topology_context.h"
 
 #include <functional>

@@ -1,12 +1,13 @@
 // The time loop without finite elements: forces, motion, collisions, node splitting, remeshing.
 #pragma once
 
+#include "dd/crystal/product_plane.h"
 #include "dd/crystal/slip_systems.h"
 #include "dd/forces/nodal_forces.h"
 #include "dd/integrators/stabilised_runge_kutta.h"
-#include "dd/topology/motion.h"
+#include "dd/mobility/linear_glide.h"
+#include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/node_splitting.h"
-#include "dd/topology/proximity_collisions.h"
 #include "dd/topology/remesh.h"
 
 #include <algorithm>
@@ -28,63 +29,17 @@ struct DriverSettings
   double pair_tolerance = 1e-5;
 };
 
-/// Moves and collides: the one place that knows the algorithm for collisions.
-inline void move_and_collide(TopologyContext &context)
+/// The glide plane of a product line (dd/crystal/product_plane.h).
+inline ProductPlane product_plane_rule(const SlipSystems &systems)
 {
-  const unsigned parts = motion_substeps(context);
-  for (unsigned k = 0; k < parts; ++k)
+  return [systems](Network &network, const Vec3 &xi, const Vec3 &b, const Vec3 &point)
   {
-    collide(context);
-    move_nodes(context, 1.0 / parts);
-  }
-}
-
-/// The glide plane of a product line: the slip plane that holds its Burgers vector and its direction, if there is
-/// one.
-inline ProductPlane slip_plane_of_product(const SlipSystems &systems)
-{
-  return [systems](Network &network, const Vec3 &xi, const Vec3 &b, const Vec3 &point) -> PlaneIndex
-  {
-    for (const std::size_t k : systems.glissile_planes(b))
-    {
-      const SlipPlane &plane = systems.planes()[k];
-      if (std::abs(plane.normal.dot(xi)) < 1e-4)
-        return network.planes().find_or_insert(plane.miller, plane.normal, point);
-    }
-    return {};
+    const auto k = product_plane(systems, xi, b);
+    if (!k)
+      return PlaneIndex{};
+    const SlipPlane &plane = systems.planes()[*k];
+    return network.planes().find_or_insert(plane.miller, plane.normal, point);
   };
-}
-
-/// Takes the motion along the line off @p velocity of a discretisation node: it means nothing and shifts nodes for
-/// ever.
-inline Vec3 across_line(const Network &network, const NodeIndex i, const Vec3 &velocity)
-{
-  const auto arms = network.connected_segments(i);
-  if (network.is_physical(i) || arms.size() != 2)
-    return velocity;
-  const Vec3 &x = network.position(i);
-  const auto to_neighbour = [&](const SegmentIndex s)
-  { return network.minimum_image(network.position(network.other_end(s, i)) - x); };
-  const Vec3 chord = to_neighbour(arms[0]) - to_neighbour(arms[1]);
-  return velocity - chord * (chord.dot(velocity) / chord.squaredNorm());
-}
-
-/// Local glide velocities; the nodes at the ends of sessile junctions move along them. @p slide: discretisation nodes
-/// follow the force along the line too.
-inline std::vector<Vec3> velocities_with_junctions(const Network &network, const std::vector<Vec3> &force,
-                                                   const LinearGlide &law, const bool slide)
-{
-  std::vector<Vec3> velocity(network.node_capacity(), Vec3::Zero());
-  network.for_each_node(
-      [&](const NodeIndex i)
-      {
-        if (network.constraint(i) != NodeConstraint::pinned && network.degree(i) > 0)
-        {
-          const Vec3 v = free_directions(network, i) * force[i.value] / nodal_drag(network, i, law);
-          velocity[i.value] = slide ? v : across_line(network, i, v);
-        }
-      });
-  return velocity;
 }
 
 /// A network in an infinite body or, with @p cell, in a periodic one.
@@ -92,7 +47,7 @@ class DislocationDriver
 {
 public:
   DislocationDriver(DriverSettings driver_settings, const SlipSystems &systems, const PeriodicCell *periodic = nullptr)
-      : settings(std::move(driver_settings)), cell(periodic), product_plane(slip_plane_of_product(systems)),
+      : settings(std::move(driver_settings)), cell(periodic), product_plane(product_plane_rule(systems)),
         integrator(settings.integrator)
   {
     if (cell)
@@ -106,14 +61,14 @@ public:
   IntegratorStep step(const double dt_limit)
   {
     const auto velocity = [&](const Network &n)
-    { return velocities_with_junctions(n, forces(n).total, settings.mobility, sliding); };
+    { return glide_velocities(n, forces(n).total, settings.mobility, nullptr); };
     std::vector<double> drag(network.node_capacity(), 0.0);
     for (const NodeIndex i : network.nodes())
       drag[i.value] = nodal_drag(network, i, settings.mobility);
     IntegratorStep taken =
         integrator.advance(network, velocity, line_tension_stiffness(network, line_tension(), drag), dt_limit);
     TopologyContext context = this->context(taken.displacement);
-    move_and_collide(context);
+    move_lines(context, candidates);
     split_nodes(context, splitting(), [&](const Network &n) { return forces(n); });
     if (remeshing)
       remesh(context);
@@ -168,7 +123,6 @@ public:
   double time = 0;                       ///< ns
   TopologyCounts counts;
   bool remeshing = true;
-  bool sliding = false; ///< motion of discretisation nodes along the line
 
 private:
   double line_tension() const
@@ -186,6 +140,7 @@ private:
   std::unique_ptr<PeriodicImages> images;
   ProductPlane product_plane;
   StabilisedRungeKutta integrator;
+  CandidateList candidates;
   SweptArea swept;
 };
 } // namespace ddfem

@@ -125,7 +125,7 @@ struct CrossingFixture : TopologyFixture
   TopologyContext crossing_context()
   {
     TopologyContext c = context();
-    c.product_plane = slip_plane_of_product(fcc);
+    c.product_plane = product_plane_rule(fcc);
     return c;
   }
 };
@@ -235,7 +235,7 @@ TEST(NodeSplitting, TheTrialFeelsTheForcesOfTheNetworkThatItMakes)
   f.network.insert(Segment{i[0], j, trial.burgers, {}});
   f.network.check_invariants();
   const auto forces = compute_nodal_forces(f.network, exact, e, MPI_COMM_SELF).total;
-  const auto velocity = velocities_with_junctions(f.network, forces, drag, true);
+  const auto velocity = glide_velocities(f.network, forces, drag, nullptr);
   EXPECT_LT((motion[0].force - forces[i[0].value]).norm(), 1e-6 * forces[i[0].value].norm());
   EXPECT_LT((motion[1].force - forces[j.value]).norm(), 1e-6 * forces[j.value].norm());
   EXPECT_LT((motion[0].velocity - velocity[i[0].value]).norm(), 1e-6 * velocity[i[0].value].norm());

@@ -1,4 +1,4 @@
-#include "dd/topology/junctions.h"
+#include "dd/mobility/glide_constraints.h"
 
 #include <algorithm>
 #include <cmath>

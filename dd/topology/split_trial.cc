@@ -1,4 +1,4 @@
-#include "dd/topology/junctions_trial.h"
+#include "dd/topology/split_trial.h"
 
 #include "dd/elasticity/distance.h"
 #include "dd/elasticity/self_force.h"

@@ -4,8 +4,8 @@
 #include "dd/elasticity/isotropic.h"
 #include "dd/elasticity/segment_force.h"
 #include "dd/forces/nodal_forces.h"
+#include "dd/mobility/glide_constraints.h"
 #include "dd/mobility/linear_glide.h"
-#include "dd/topology/junctions.h"
 
 #include <array>
 #include <span>
