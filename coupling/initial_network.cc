@@ -1,7 +1,6 @@
 #include "coupling/initial_network.h"
 
 #include "coupling/input_error.h"
-#include "dd/crystal/product_plane.h"
 #include "dd/io/file_error.h"
 #include "dd/io/paradis_data.h"
 #include "dd/microstructure/adopt_slip_planes.h"
@@ -104,17 +103,5 @@ void fit_into_grain(Network &network, const GrainShape &shape, const double min_
                        " is not on the surface of the grain");
     network.set_position(i, *y);
   }
-}
-
-ProductPlane product_plane_rule(const SlipSystems &systems)
-{
-  return [systems](Network &network, const Vec3 &xi, const Vec3 &b, const Vec3 &point) -> PlaneIndex
-  {
-    const auto k = product_plane(systems, xi, b);
-    if (!k)
-      return {};
-    const SlipPlane &plane = systems.planes()[*k];
-    return network.planes().find_or_insert(plane.miller, plane.normal, point);
-  };
 }
 } // namespace ddfem::coupling

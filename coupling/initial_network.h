@@ -18,8 +18,4 @@ Network build_network(const Parameters &parameters);
 /// Throws InputError naming the first nodes that lie outside the grain, or inside but marked as surface nodes. Surface
 /// nodes within 1e-3 of the grain's diameter of the surface are put onto it.
 void fit_into_grain(Network &network, const GrainShape &shape, double min_segment);
-
-/// Where a junction line glides: product_plane() of dd/crystal without parents, because topology does not hand over
-/// those of the lines that reacted.
-ProductPlane product_plane_rule(const SlipSystems &systems);
 } // namespace ddfem::coupling

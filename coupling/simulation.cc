@@ -5,6 +5,7 @@
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/growth.h"
 #include "dd/topology/node_splitting.h"
+#include "dd/topology/product_plane_rule.h"
 #include "dd/topology/remesh.h"
 
 #include <algorithm>

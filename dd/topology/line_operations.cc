@@ -1,6 +1,7 @@
 #include "dd/topology/line_operations.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace ddfem
@@ -46,6 +47,9 @@ void join(TopologyContext &context, const NodeIndex a, const NodeIndex c, const 
   }
   const Vec3 sum = network.burgers_from(*existing, a) + b;
   const PlaneIndex old_plane = network.plane(*existing);
+  const auto normal = [&](const PlaneIndex p)
+  { return p.is_valid() ? network.planes()[p].normal : Vec3(Vec3::Zero()); };
+  const std::array<Vec3, 2> parents{normal(plane), normal(old_plane)};
   const SegmentOrigin both = combined(origin, origin_from(context, *existing, a));
   network.erase(*existing);
   if (sum.norm() < 1e-6 * b.norm())
@@ -58,7 +62,7 @@ void join(TopologyContext &context, const NodeIndex a, const NodeIndex c, const 
   if (!same_plane && !(plane == old_plane))
   {
     const Vec3 xi = network.minimum_image(network.position(c) - network.position(a)).normalized();
-    product = context.product_plane(network, xi, sum, network.position(a));
+    product = context.product_plane(network, xi, sum, network.position(a), parents);
   }
   context.insert_segment(Segment{a, c, sum, product}, both);
 }

@@ -111,7 +111,11 @@ bool set_apart(const NodeNeighbourhood &node, const TrialSettings &settings, con
   {
     Network planes; // only its registry of planes is used
     const Vec3 xi = (split.shift[1] - split.shift[0]).normalized();
-    const PlaneIndex plane = settings.product_plane(planes, xi, split.burgers, Vec3(settings.node + split.shift[0]));
+    std::vector<Vec3> parents;
+    for (const NodeNeighbourhood::Arm &arm : node.arms())
+      parents.push_back(arm.constraint.normal);
+    const PlaneIndex plane =
+        settings.product_plane(planes, xi, split.burgers, Vec3(settings.node + split.shift[0]), parents);
     split.junction_normal = plane.is_valid() ? planes.planes()[plane].normal : Vec3(Vec3::Zero());
   }
   for (std::size_t side = 0; side < 2; ++side)
@@ -200,7 +204,11 @@ bool perform(TopologyContext &c, const NodeIndex i, const TrialSplit &split)
   move_node(c, i, first);
   move_node(c, j, second);
   if (!split.burgers.isZero(0))
-    n.insert(Segment{i, j, split.burgers, c.product_plane(n, (second - first).normalized(), split.burgers, first)});
+  {
+    const std::array<Vec3, 1> as_tried{split.junction_normal};
+    const Vec3 xi = (second - first).normalized();
+    n.insert(Segment{i, j, split.burgers, c.product_plane(n, xi, split.burgers, first, as_tried)});
+  }
   ++c.counts.splits;
   return true;
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace ddfem
@@ -39,8 +40,9 @@ struct TopologyCounts
 };
 
 /// The glide plane of a product line of direction xi (unit) and Burgers vector b through a point, or invalid if the line is
-/// sessile.
-using ProductPlane = std::function<PlaneIndex(Network &, const Vec3 &xi, const Vec3 &b, const Vec3 &point)>;
+/// sessile. @p parents: unit normals of the planes of the lines that reacted (zero for sessile ones), which a screw keeps.
+using ProductPlane = std::function<PlaneIndex(Network &, const Vec3 &xi, const Vec3 &b, const Vec3 &point,
+                                              std::span<const Vec3> parents)>;
 
 /// What a segment remembers of the start of the step while collisions are handled.
 struct SegmentOrigin

@@ -1,13 +1,13 @@
 // The time loop without finite elements: forces, motion, collisions, node splitting, remeshing.
 #pragma once
 
-#include "dd/crystal/product_plane.h"
 #include "dd/crystal/slip_systems.h"
 #include "dd/forces/nodal_forces.h"
 #include "dd/integrators/stabilised_runge_kutta.h"
 #include "dd/mobility/linear_glide.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/node_splitting.h"
+#include "dd/topology/product_plane_rule.h"
 #include "dd/topology/remesh.h"
 
 #include <algorithm>
@@ -28,19 +28,6 @@ struct DriverSettings
   IntegratorSettings integrator;
   double pair_tolerance = 1e-5;
 };
-
-/// The glide plane of a product line (dd/crystal/product_plane.h).
-inline ProductPlane product_plane_rule(const SlipSystems &systems)
-{
-  return [systems](Network &network, const Vec3 &xi, const Vec3 &b, const Vec3 &point)
-  {
-    const auto k = product_plane(systems, xi, b);
-    if (!k)
-      return PlaneIndex{};
-    const SlipPlane &plane = systems.planes()[*k];
-    return network.planes().find_or_insert(plane.miller, plane.normal, point);
-  };
-}
 
 /// A network in an infinite body or, with @p cell, in a periodic one.
 class DislocationDriver

@@ -1,7 +1,6 @@
 // Networks of random loops and lines of an fcc crystal, moved at random: what topology has to survive.
 #pragma once
 
-#include "dd/crystal/product_plane.h"
 #include "dd/crystal/slip_systems.h"
 #include "dd/geometry/grain_shape.h"
 #include "dd/microstructure/sources.h"
@@ -9,6 +8,7 @@
 #include "dd/topology/collisions/continuous_collisions.h"
 #include "dd/topology/motion.h"
 #include "dd/topology/node_splitting.h"
+#include "dd/topology/product_plane_rule.h"
 #include "dd/topology/remesh.h"
 #include "tests/dd/topology/topology_fixture.h"
 
@@ -171,11 +171,7 @@ struct RandomNetwork : TopologyFixture
   {
     TopologyContext c = context();
     c.remaining = random_displacements(network, k, 0.5 * settings.min_segment, shape);
-    c.product_plane = [this](Network &n, const Vec3 &xi, const Vec3 &b, const Vec3 &x)
-    {
-      const auto p = product_plane(systems, xi, b);
-      return p ? n.planes().find_or_insert(systems.planes()[*p].miller, systems.planes()[*p].normal, x) : PlaneIndex{};
-    };
+    c.product_plane = product_plane_rule(systems);
     bend_displacements_along_surface(c);
     report = collide_continuously(c, candidates, collision_settings);
     move_nodes(c, 1);

@@ -30,7 +30,7 @@ struct TopologyFixture
             settings,
             shape,
             RayDirection::normal,
-            [](Network &, const Vec3 &, const Vec3 &, const Vec3 &) { return PlaneIndex{}; },
+            [](Network &, const Vec3 &, const Vec3 &, const Vec3 &, std::span<const Vec3>) { return PlaneIndex{}; },
             swept,
             counts,
             std::vector<Vec3>(network.node_capacity(), d)};
