@@ -281,11 +281,13 @@ TEST(CandidateList, DoesNotMindNodesThatMoveToAnotherImage)
 TEST(CandidateList, FollowsIndicesThatCleaningHasExchanged)
 {
   Network network;
-  for (const double z : {0.2, 0.0}) // nearer to each other than the skin is wide: by position they cannot be told apart
-  {
-    const NodeIndex a = network.insert({Vec3(0, 0, z)}), b = network.insert({Vec3(10, 0, z)});
-    network.insert(Segment{a, b, Vec3::UnitX(), {}});
-  }
+  std::vector<NodeIndex> nodes;
+  for (const double x : {0.0, 10.0})
+    for (const double z :
+         {0.2, 0.0}) // nearer to each other than the skin is wide: the position does not tell them apart
+      nodes.push_back(network.insert({Vec3(x, 0, z)}));
+  for (const std::size_t k : {0U, 1U})
+    network.insert(Segment{nodes[k], nodes[k + 2], Vec3::UnitX(), {}});
   CandidateList list;
   list.update(network, {}, 1);
   network.clean();
