@@ -128,7 +128,7 @@ void coarsen(TopologyContext &context)
         if (const Corner corner = corner_at(network, i); improve(context, i))
           for (const NodeIndex neighbour : {corner.a, corner.c})
             append_surroundings(network, neighbour, again);
-    std::sort(again.begin(), again.end());
+    std::ranges::sort(again, {}, &NodeIndex::value);
     again.erase(std::unique(again.begin(), again.end()), again.end());
     nodes = std::move(again);
   }

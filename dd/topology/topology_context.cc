@@ -33,13 +33,12 @@ SegmentIndex TopologyContext::insert_segment(const Segment &segment, const Segme
   return s;
 }
 
-NodeIndex TopologyContext::insert_node(const Node &node, const Vec3 &displacement)
+NodeIndex TopologyContext::insert_node(const Node &node, Vec3 displacement)
 {
-  const Vec3 kept = displacement; // `remaining` may move in memory below
   const NodeIndex i = network.insert(node);
   if (remaining.size() <= i.value)
     remaining.resize(i.value + 1, Vec3::Zero());
-  remaining[i.value] = kept;
+  remaining[i.value].swap(displacement);
   return i;
 }
 

@@ -81,8 +81,8 @@ struct TopologyContext
   SegmentOrigin origin(SegmentIndex s) const;
   SegmentIndex insert_segment(const Segment &segment, const SegmentOrigin &origin);
 
-  /// @p displacement may be an entry of `remaining`.
-  NodeIndex insert_node(const Node &node, const Vec3 &displacement);
+  /// @p displacement is taken by value: it may be an entry of `remaining`, which grows here.
+  NodeIndex insert_node(const Node &node, Vec3 displacement);
 
   double time_of(NodeIndex i) const { return i.value < recorded_at.size() ? recorded_at[i.value] : 0.0; }
   void set_time(NodeIndex i, double t);

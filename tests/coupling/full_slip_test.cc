@@ -33,7 +33,8 @@ SweptArea loop_that_has_left(const GrainShape &shape, const Vec3 &n, const Vec3 
                       settings,
                       &shape,
                       RayDirection::normal,
-                      [](Network &, const Vec3 &, const Vec3 &, const Vec3 &) { return PlaneIndex{}; },
+                      [](Network &, const Vec3 &, const Vec3 &, const Vec3 &, std::span<const Vec3>)
+                      { return PlaneIndex{}; },
                       swept,
                       counts,
                       std::vector<Vec3>(network.node_capacity(), Vec3::Zero())};
