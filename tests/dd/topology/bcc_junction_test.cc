@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
+#include <algorithm>
+#include <array>
+#include <vector>
 
 namespace ddfem
 {
@@ -103,9 +105,13 @@ TEST(BccJunctions, GlissileJunctionBowsUnderStressAndTheSessileOneDoesNot)
     c.relax(0.05, 1);
     expect_sound(c, half_111_and_100);
     if (product_plane(bcc, p.e, b))
+    {
       EXPECT_GT(offset(), before + 1);
+    }
     else
+    {
       EXPECT_LT(offset(), 1e-5);
+    }
   }
 }
 
@@ -116,12 +122,19 @@ TEST(BccJunctions, LinesThatRepelDoNotReact)
   const CrossingPair p(first, second, 1, -1);
   EXPECT_NEAR(p.energy_change(), 0.5 * iron.lattice_parameter * iron.lattice_parameter, 1e-12);
   for (const double degrees : {15.0, 30.0})
-  {
-    CrossingLines c(iron, bcc, length, p.at(degrees, -degrees, 2));
-    c.relax_to_rest();
-    expect_sound(c, {BurgersType::half_111});
-    expect_separate_lines(c);
-  }
+    for (const double push : {0.0, 300.0}) // MPa, on the second line towards the first
+    {
+      CrossingLines c(iron, bcc, length, p.at(degrees, -degrees, push > 0 ? 4 : 0.5));
+      c.applied = push * second.schmid_tensor();
+      c.relax_to_rest();
+      expect_sound(c, {BurgersType::half_111});
+      expect_separate_lines(c);
+      EXPECT_EQ(c.counts.collisions, 0U);
+      if (push > 0) // the first line gives way
+      {
+        EXPECT_GT(c.length_with(c.lines[0].burgers), 1.08 * length);
+      }
+    }
 }
 
 TEST(BccJunctions, LinesOfTheSameBurgersVectorOnPlanesOfItsZoneAnnihilate)
@@ -173,6 +186,13 @@ std::vector<CrossingLine> three_lines(const std::array<double, 3> &degrees, cons
 }
 const Vec3 sum_of_three = 0.5 * iron.lattice_parameter * Vec3(1, 1, 1);
 
+void expect_all_body_diagonals(const CrossingLines &c, const NodeIndex i)
+{
+  const auto arms = c.network.connected_segments(i);
+  for (const Vec3 &b : {sum_of_three, c.lines[0].burgers, c.lines[1].burgers, c.lines[2].burgers})
+    EXPECT_EQ(std::count_if(arms.begin(), arms.end(), [&](const SegmentIndex s) { return c.carries(s, b); }), 1);
+}
+
 TEST(BccJunctions, ThreeLinesMakeAJunctionOfTheFourthBodyDiagonalBetweenTwoMultiNodes)
 {
   CrossingLines c(iron, bcc, length, three_lines({20, 20, -20}, {0, 0.5, -0.5}));
@@ -183,11 +203,43 @@ TEST(BccJunctions, ThreeLinesMakeAJunctionOfTheFourthBodyDiagonalBetweenTwoMulti
   ASSERT_EQ(c.nodes_with_degree(4), 2U);
   for (const NodeIndex i : c.network.nodes())
     if (c.network.degree(i) == 4)
-    {
-      const auto arms = c.network.connected_segments(i);
-      for (const Vec3 &b : {sum_of_three, c.lines[0].burgers, c.lines[1].burgers, c.lines[2].burgers})
-        EXPECT_EQ(std::count_if(arms.begin(), arms.end(), [&](const SegmentIndex s) { return c.carries(s, b); }), 1);
-    }
+      expect_all_body_diagonals(c, i);
+}
+
+TEST(BccJunctions, ThirdLineTurnsACubeJunctionIntoTheFourthBodyDiagonal)
+{
+  const auto lines = three_lines({15, -15, 0}, {0, 0.5, 4});
+  const Vec3 cube = lines[0].burgers + lines[1].burgers; // a[001], on the plane of the third line
+  CrossingLines c(iron, bcc, length, {lines[0], lines[1]});
+  c.relax_to_rest();
+  expect_junction(c, cube, lines[2].system.plane);
+  const double before = c.length_with(cube);
+  ASSERT_GT(before, 0.6 * length);
+  EXPECT_EQ(c.length_with(sum_of_three), 0);
+  // a[001] + a/2[11-1] -> a/2[111]: 1 + 3/4 -> 3/4. The junction attracts the third line, which was straight and 4 nm away.
+  c.add(lines[2]);
+  c.relax_to_rest();
+  expect_sound(c, half_111_and_100);
+  EXPECT_LT(c.length_with(cube), 0.15 * before);
+  EXPECT_GT(c.length_with(sum_of_three), 0.8 * length);
+}
+
+TEST(BccJunctions, CrystallographicImagesOfLinesReactToTheImageOfTheJunction)
+{
+  const CrossingPair p = glissile();
+  const auto lines = p.at(20, -35);
+  CrossingLines c(iron, bcc, length, lines);
+  c.relax_to_rest();
+  ASSERT_GT(c.length_with(p.product()), 40);
+  const auto group = test::point_group(Lattice::bcc);
+  for (std::size_t k = 1; k < group.size(); k += 6)
+  {
+    const Mat3 &g = group[k];
+    CrossingLines image(iron, bcc, length, {image_of(lines[0], bcc, g), image_of(lines[1], bcc, g)});
+    image.relax_to_rest();
+    // The same operations in the same order: only rounding, 1e-12 nm measured, and the motion to rest does not amplify it.
+    EXPECT_LT(largest_deviation(c, image, g), 1e-9) << g;
+  }
 }
 } // namespace
 } // namespace ddfem

@@ -67,21 +67,24 @@ class CrossingLines : public DislocationDriver
 {
 public:
   CrossingLines(const Material &material, const SlipSystems &slip_systems, const double line_length,
-                std::vector<CrossingLine> crossing)
-      : DislocationDriver(coarse_settings(material), slip_systems), systems(slip_systems), length(line_length),
-        lines(std::move(crossing))
+                const std::vector<CrossingLine> &crossing)
+      : DislocationDriver(coarse_settings(material), slip_systems), systems(slip_systems), length(line_length)
+  {
+    for (const CrossingLine &l : crossing)
+      add(l);
+  }
+
+  void add(CrossingLine l)
   {
     constexpr int parts = 10;
-    for (CrossingLine &l : lines)
-    {
-      const PlaneIndex p = network.planes().find_or_insert(l.system.plane_miller, l.system.normal, Vec3(Vec3::Zero()));
-      const Vec3 middle = l.gap * l.system.normal.cross(l.direction);
-      std::vector<Vec3> points;
-      for (int m = 0; m <= parts; ++m)
-        points.push_back(network.planes().project(p, middle + (double(m) / parts - 0.5) * length * l.direction));
-      const auto nodes = add_line(network, points, l.burgers, p, false, NodeConstraint::pinned);
-      l.ends = {network.id(nodes.front()), network.id(nodes.back())};
-    }
+    const PlaneIndex p = network.planes().find_or_insert(l.system.plane_miller, l.system.normal, Vec3(Vec3::Zero()));
+    const Vec3 middle = l.gap * l.system.normal.cross(l.direction);
+    std::vector<Vec3> points;
+    for (int m = 0; m <= parts; ++m)
+      points.push_back(network.planes().project(p, middle + (1.0 * m / parts - 0.5) * length * l.direction));
+    const auto nodes = add_line(network, points, l.burgers, p, false, NodeConstraint::pinned);
+    l.ends = {network.id(nodes.front()), network.id(nodes.back())};
+    lines.push_back(l);
   }
 
   /// Until no node is faster than 1 nm/ns, @p duration ns at most.
