@@ -161,6 +161,12 @@ struct CrossingPair
   {
     return {line_at(system[0], sign[0], e, degrees_1), line_at(system[1], sign[1], e, degrees_2, gap)};
   }
+  /// What is left of two lines at plus and minus @p degrees from e that annihilate, were the line tension isotropic:
+  /// the distances of their four ends from e, nm.
+  static double shortest_way_to_intersection(const double degrees, const double line_length)
+  {
+    return 2 * line_length * std::sin(degrees * std::numbers::pi / 180);
+  }
   Vec3 product() const { return sign[0] * system[0].burgers + sign[1] * system[1].burgers; }
   /// Of Frank's criterion, b^2 - b1^2 - b2^2 in nm^2.
   double energy_change() const

@@ -90,12 +90,15 @@ TEST(HcpJunctions, LinesOfTheSameBurgersVectorOnTwoPlanesAnnihilate)
   {
     const CrossingPair p = pair_of(first, second);
     EXPECT_EQ(p.product().norm(), 0);
-    CrossingLines c(zirconium, hcp, length, p.at(30, -30));
-    c.relax_to_rest();
-    expect_sound(c, {*hcp.burgers_type(p.system[0].burgers)});
-    expect_annihilated(c);
-    // The shortest way from each of the four ends to e, 4 L/2 sin(30 deg), were the line tension isotropic.
-    EXPECT_NEAR(c.length_with(p.system[0].burgers), length, 0.02 * length);
+    for (const double degrees : {15.0, 30.0})
+    {
+      CrossingLines c(zirconium, hcp, length, p.at(degrees, -degrees));
+      c.relax_to_rest();
+      expect_sound(c, {*hcp.burgers_type(p.system[0].burgers)});
+      expect_annihilated(c);
+      const double shortest = p.shortest_way_to_intersection(degrees, length);
+      EXPECT_NEAR(c.length_with(p.system[0].burgers), shortest, 0.02 * shortest);
+    }
   }
 }
 
