@@ -167,6 +167,8 @@ TEST(BccJunctions, DissolveUnderStressAndTheLinesRecoverTheirBurgersVectorsAndPl
     EXPECT_EQ(c.length_with(p.product()), 0);
     expect_sound(c, {BurgersType::half_111});
     expect_separate_lines(c);
+    EXPECT_EQ(c.counts.annihilations,
+              0U); // they let go of each other where they cross, none is pinched off around the other
   }
 }
 
