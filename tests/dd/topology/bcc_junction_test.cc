@@ -149,7 +149,7 @@ TEST(BccJunctions, LinesOfTheSameBurgersVectorOnPlanesOfItsZoneAnnihilate)
       c.relax_to_rest();
       expect_sound(c, {BurgersType::half_111});
       expect_annihilated(c);
-      const double shortest = p.shortest_way_to_intersection(degrees, length);
+      const double shortest = shortest_way_to_intersection(degrees, length);
       EXPECT_NEAR(c.length_with(first.burgers), shortest, 0.02 * shortest);
     }
 }

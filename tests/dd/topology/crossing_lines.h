@@ -161,12 +161,6 @@ struct CrossingPair
   {
     return {line_at(system[0], sign[0], e, degrees_1), line_at(system[1], sign[1], e, degrees_2, gap)};
   }
-  /// What is left of two lines at plus and minus @p degrees from e that annihilate, were the line tension isotropic:
-  /// the distances of their four ends from e, nm.
-  static double shortest_way_to_intersection(const double degrees, const double line_length)
-  {
-    return 2 * line_length * std::sin(degrees * std::numbers::pi / 180);
-  }
   Vec3 product() const { return sign[0] * system[0].burgers + sign[1] * system[1].burgers; }
   /// Of Frank's criterion, b^2 - b1^2 - b2^2 in nm^2.
   double energy_change() const
@@ -178,6 +172,13 @@ struct CrossingPair
   std::array<double, 2> sign;
   Vec3 e; ///< unit vector along both planes
 };
+
+/// What is left of two lines at plus and minus @p degrees from e that annihilate, were the line tension isotropic: the
+/// distances of their four ends from e, nm.
+inline double shortest_way_to_intersection(const double degrees, const double line_length)
+{
+  return 2 * line_length * std::sin(degrees * std::numbers::pi / 180);
+}
 
 /// How far the length of a junction may be from junction_length_of_least_energy(), relative: the stress of lines that
 /// end 50 nm away is not in equilibrium, and the forces of these lines are not minus the gradient of their energy.
@@ -225,7 +226,7 @@ inline double junction_length_of_least_energy(const IsotropicMedium &medium, con
 }
 
 /// Every segment carries a lattice translation of one of @p types; it lies in its plane with its direction and b; at
-/// every free node the Burgers vectors balance; lines with the b of an initial line are still on the plane of that
+/// every free node the Burgers vectors balance; lines with the b of an initial line are still on the plane of such a
 /// line.
 inline void expect_sound(const CrossingLines &c, const std::vector<BurgersType> &types)
 {
@@ -254,8 +255,33 @@ inline void expect_sound(const CrossingLines &c, const std::vector<BurgersType> 
     for (const SegmentIndex s : c.segments_with(l.burgers))
     {
       ASSERT_TRUE(n.plane(s).is_valid());
+      const auto is_home = [&](const CrossingLine &other)
+      { return c.carries(s, other.burgers) && n.normal(s).cross(other.system.normal).norm() < 1e-12; };
+      EXPECT_TRUE(std::any_of(c.lines.begin(), c.lines.end(), is_home));
       EXPECT_NEAR(n.position(n.start(s)).dot(n.normal(s)), 0, 1e-5);
     }
+}
+
+/// Follows the segments with @p b from node @p here to the next node that has not two arms; returns that node and how
+/// many segments there were.
+inline std::pair<NodeIndex, std::size_t> follow(const CrossingLines &c, NodeIndex here, const Vec3 &b)
+{
+  const Network &n = c.network;
+  SegmentIndex last;
+  for (std::size_t count = 1; count <= n.n_segments(); ++count)
+  {
+    const auto arms = n.connected_segments(here);
+    const SegmentIndex before = last;
+    const auto next =
+        std::find_if(arms.begin(), arms.end(), [&](const SegmentIndex s) { return s != before && c.carries(s, b); });
+    if (next == arms.end())
+      return {here, count - 1};
+    last = *next;
+    here = n.other_end(last, here);
+    if (n.degree(here) != 2)
+      return {here, count};
+  }
+  return {{}, 0}; // a closed ring
 }
 
 /// One chain of segments with @p b joins two nodes of three arms, and there is no other node of more than two; each of
@@ -284,23 +310,9 @@ inline void expect_junction(const CrossingLines &c, const Vec3 &b, const std::op
         EXPECT_EQ(std::count_if(arms.begin(), arms.end(), [&](const SegmentIndex s) { return c.carries(s, each); }), 1);
     }
   ASSERT_EQ(ends.size(), 2U);
-  // Follow the junction from one to the other: as many segments as there are with this b.
-  std::size_t found = 0;
-  NodeIndex here = ends[0];
-  SegmentIndex last;
-  do
-  {
-    SegmentIndex next;
-    for (const SegmentIndex s : n.connected_segments(here))
-      if (s != last && c.carries(s, b))
-        next = s;
-    ASSERT_TRUE(n.contains(next));
-    here = n.other_end(next, here);
-    last = next;
-    ++found;
-  } while (n.degree(here) == 2 && found < n.n_segments());
-  EXPECT_EQ(here, ends[1]);
-  EXPECT_EQ(found, c.segments_with(b).size());
+  const auto [far, count] = follow(c, ends[0], b);
+  EXPECT_EQ(far, ends[1]);
+  EXPECT_EQ(count, c.segments_with(b).size());
 }
 
 /// Both lines run again from end to end of their own, with their Burgers vectors and on their planes.

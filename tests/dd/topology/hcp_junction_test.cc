@@ -96,7 +96,7 @@ TEST(HcpJunctions, LinesOfTheSameBurgersVectorOnTwoPlanesAnnihilate)
       c.relax_to_rest();
       expect_sound(c, {*hcp.burgers_type(p.system[0].burgers)});
       expect_annihilated(c);
-      const double shortest = p.shortest_way_to_intersection(degrees, length);
+      const double shortest = shortest_way_to_intersection(degrees, length);
       EXPECT_NEAR(c.length_with(p.system[0].burgers), shortest, 0.02 * shortest);
     }
   }
