@@ -1,8 +1,8 @@
 #include "dd/topology/collisions/moving_lines.h"
 
 #include "dd/topology/collisions/continuous_collisions.h"
+#include "dd/topology/collisions/proximity_collisions.h"
 #include "dd/topology/motion.h"
-#include "dd/topology/proximity_collisions.h"
 
 namespace ddfem
 {

@@ -1,7 +1,7 @@
+#include "dd/topology/collisions/proximity_collisions.h"
 #include "dd/topology/line_operations.h"
 #include "dd/topology/motion.h"
 #include "dd/topology/node_splitting.h"
-#include "dd/topology/proximity_collisions.h"
 #include "dd/topology/remesh.h"
 #include "topology_fixture.h"
 

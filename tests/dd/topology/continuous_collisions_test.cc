@@ -1,7 +1,7 @@
 // Collisions over a whole step: outcome against the reference algorithm, order, termination, independence of the numbering.
 #include "dd/topology/collisions/continuous_collisions.h"
+#include "dd/topology/collisions/proximity_collisions.h"
 #include "dd/topology/motion.h"
-#include "dd/topology/proximity_collisions.h"
 #include "tests/dd/topology/topology_fixture.h"
 
 #include <gtest/gtest.h>

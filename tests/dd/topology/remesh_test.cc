@@ -2,13 +2,13 @@
 #include "dd/topology/line_operations.h"
 #include "dd/topology/motion.h"
 #include "dd/topology/remesh.h"
+#include "tests/dd/topology/random_networks.h"
 #include "tests/dd/topology/topology_fixture.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <set>
 #include <vector>
 
@@ -17,13 +17,6 @@ namespace ddfem
 namespace
 {
 const Vec3 b(0.25, 0, 0);
-using Random = std::mt19937_64;
-
-double uniform(Random &random, const double low, const double high)
-{
-  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
 /// A wandering line in the plane z = 0 with segments of length @p low to @p high and bends up to @p bend (rad).
 std::vector<Vec3> wandering_line(Random &random, const int n, const double low, const double high, const double bend)
 {

@@ -1,4 +1,4 @@
-#include "dd/topology/proximity_collisions.h"
+#include "dd/topology/collisions/proximity_collisions.h"
 
 #include "dd/elasticity/distance.h"
 #include "dd/topology/collisions/merging.h"
