@@ -211,7 +211,9 @@ void remove_surface_segments(TopologyContext &context)
     if (network.constraint(i) != NodeConstraint::surface || network.constraint(j) != NodeConstraint::surface)
       continue;
     const Vec3 middle = 0.5 * (network.position(i) + network.position(j));
-    if (-context.shape->signed_distance(middle) < flatness * network.length(s))
+    // Both ends of a line along its own direction of motion leave at one point: then nothing is left of it.
+    const double rounding = 1e-9 * context.shape->diameter();
+    if (-context.shape->signed_distance(middle) < flatness * network.length(s) + rounding)
       leave_through_surface(context, s);
   }
 }
