@@ -206,5 +206,7 @@ void remesh(TopologyContext &context)
     release_short_surface_lines(context);
   refine(context);
   coarsen(context);
+  if (context.shape) // lines that have lost their last interior node
+    release_short_surface_lines(context);
 }
 } // namespace ddfem

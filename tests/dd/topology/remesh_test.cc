@@ -176,6 +176,20 @@ TEST(Remesh, PhysicalNodesStayWhereTheyAre)
   EXPECT_EQ(n.position(*n.find_node(n.id(right))), Vec3(3, 0, 0));
 }
 
+TEST(Remesh, ALineThatLosesItsLastInteriorNodeBetweenTwoSurfaceNodesLeaves)
+{
+  // A small half loop whose two ends are at one point of the surface.
+  const BoxShape box(Vec3::Zero(), Vec3(100, 100, 100));
+  TopologyFixture f;
+  f.shape = &box;
+  add_line(f.network, {Vec3(100, 50, 50), Vec3(97, 48, 50), Vec3(97, 52, 50), Vec3(100, 50, 50)}, b, f.horizontal(50),
+           false, NodeConstraint::surface);
+  auto c = f.context();
+  remesh(c);
+  EXPECT_EQ(f.network.n_nodes(), 0U);
+  EXPECT_NEAR(std::abs(inside_area(f.swept, b)[2]), 6, 1e-12);
+}
+
 TEST(Remesh, SharpBendsAreResolvedByShorterSegments)
 {
   TopologyFixture f;
