@@ -6,7 +6,7 @@
 namespace ddfem
 {
 /// Brings the lengths of the segments between L_min and L_max where physical nodes allow it, in this order:
-///  - lines shorter than L_min between two surface nodes leave;
+///  - lines shorter than L_min between two surface nodes leave (at the end once more);
 ///  - a segment longer than L_max is divided into equal parts; one longer than 3 L_min is halved if the triangle of one of its
 ///    nodes with the neighbours is larger than the maximum area: the line is sharply bent there;
 ///  - a discretisation node with an arm shorter than L_min is removed if the joined segment is not longer than 2 L_min, and
