@@ -247,17 +247,17 @@ bool are_current(const Network &n, const NodeIndex i, const NodalForces &forces,
 void split_nodes(TopologyContext &context, const SplittingModel &model, const ForceFunction &forces)
 {
   Network &n = context.network;
-  std::optional<NodalForces> present;
-  std::vector<bool> changed; ///< nodes that have been split since
-  for (const NodeIndex i : candidates(n))
+  const std::vector<NodeIndex> nodes = candidates(n);
+  if (nodes.empty())
+    return;
+  const NodalForces present = forces(n);
+  std::vector<bool> changed(n.node_capacity(), false); // nodes that have been split
+  for (const NodeIndex i : nodes)
   {
-    if (!present || !are_current(n, i, *present, changed))
-    {
-      present = forces(n);
-      changed.assign(n.node_capacity(), false);
-    }
+    if (!are_current(n, i, present, changed))
+      continue; // a neighbour has been split: next step, with new forces
     const double separation = std::min(1.5 * context.settings.collision_radius, 0.5 * shortest_arm(n, i));
-    const NodeNeighbourhood neighbourhood(n, i, model, *present);
+    const NodeNeighbourhood neighbourhood(n, i, model, present);
     const auto split = best_split(neighbourhood, {context.product_plane, separation, n.position(i)}, model.margin);
     if (split && perform(context, i, split->split))
       changed[i.value] = true;

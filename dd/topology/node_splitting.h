@@ -20,7 +20,7 @@ using ForceFunction = std::function<NodalForces(const Network &)>;
 /// of largest power if that exceeds its own by the margin of @p model, and if in the trial configuration the parts
 /// move apart by their own velocities.
 ///
-/// @p forces is called once if some node can split, and again only where one split has changed the arms of another
-/// candidate.
+/// @p forces is called once if some node can split. A node with an arm to one that has just been split waits for the next
+/// call.
 void split_nodes(TopologyContext &context, const SplittingModel &model, const ForceFunction &forces);
 } // namespace ddfem
