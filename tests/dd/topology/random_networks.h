@@ -130,8 +130,9 @@ struct RandomNetwork : TopologyFixture
   Body body = Body::periodic;
   std::unique_ptr<GrainShape> grain;
   CollisionSettings collision_settings;
-  CollisionReport report; ///< of the last step
-  bool splitting = true;  ///< with random forces, which depend on the persistent ids
+  CollisionReport report;               ///< of the last step
+  bool splitting = true;                ///< with random forces, which depend on the persistent ids
+  std::uint64_t splitting_interval = 1; ///< steps
 
   RandomNetwork(const std::size_t n_segments, const double density, const Body kind) : body(kind)
   {
@@ -176,7 +177,7 @@ struct RandomNetwork : TopologyFixture
     report = collide_continuously(c, candidates, collision_settings);
     move_nodes(c, 1);
     const IsotropicMedium aluminium{26500, 0.345, 0.286};
-    if (splitting)
+    if (splitting && k % splitting_interval == 0)
       split_nodes(c, SplittingModel{aluminium, aluminium.a, {0.01, 0.01}},
                   [k](const Network &n) { return random_forces(n, k); });
     remesh(c);
