@@ -129,8 +129,8 @@ bool CollisionHandler::use_up(const MergePlan &plan)
   Meeting meeting;
   if (a.is_cut() && b.is_cut())
   {
-    const auto [low, high] = std::minmax(lineage(a), lineage(b));
-    meeting = {false, low, high};
+    const ObjectId p = lineage(a), q = lineage(b);
+    meeting = {false, std::min(p, q), std::max(p, q)};
   }
   else
     meeting =
