@@ -1,5 +1,5 @@
 // Random networks of 1e4 and 1e5 segments, moved 200 steps at random with every operation (node splitting, which tries
-// hundreds of configurations for each crossing, every tenth step), in a periodic cell and in a grain: all invariants hold after
+// hundreds of configurations for each crossing, every 25 or 100 steps), in a periodic cell and in a grain: all invariants hold after
 // each step. Prints what happened and the time per segment and step.
 #include "tests/dd/topology/random_networks.h"
 
@@ -13,7 +13,7 @@ void run(const std::size_t n_segments, const ddfem::Body body, const char *name)
 {
   const auto begin = std::chrono::steady_clock::now();
   ddfem::RandomNetwork f(n_segments, 1e-4, body);
-  f.splitting_interval = 10;
+  f.splitting_interval = n_segments > 50000 ? 100 : 25;
   std::size_t segment_steps = 0, refused = 0, exhausted = 0;
   for (std::uint64_t k = 0; k < 200; ++k)
   {
