@@ -31,6 +31,7 @@ void run(const std::size_t n_segments, const ddfem::Body body, const char *name)
       name, n_segments, f.network.n_segments(), f.counts.collisions, f.counts.annihilations, f.counts.refinements,
       f.counts.coarsenings, f.counts.surface_exits, f.counts.splits, refused, exhausted, lists.builds, lists.updates,
       1e6 * time.count() / static_cast<double>(segment_steps));
+  std::fflush(stdout);
 }
 } // namespace
 
