@@ -20,6 +20,12 @@ void forbid(Mat3 &left, const Vec3 &direction)
 }
 } // namespace
 
+std::array<Vec3, 2> directions_across(const Vec3 &line)
+{
+  const Vec3 across = line.unitOrthogonal();
+  return {across, line.cross(across)};
+}
+
 ArmConstraint arm_constraint(const Network &network, const SegmentIndex s)
 {
   return {network.normal(s), network.direction(s).normalized()};
@@ -36,11 +42,8 @@ Mat3 free_directions(std::span<const ArmConstraint> arms)
       forbid(left, a.normal);
   for (const ArmConstraint &a : arms)
     if (a.is_sessile())
-    {
-      const Vec3 across = a.line.unitOrthogonal();
-      forbid(left, across);
-      forbid(left, a.line.cross(across));
-    }
+      for (const Vec3 &across : directions_across(a.line))
+        forbid(left, across);
   return left.trace() > 0.5 ? left : Mat3(Mat3::Zero());
 }
 

@@ -3,6 +3,7 @@
 
 #include "dd/network/network.h"
 
+#include <array>
 #include <span>
 
 namespace ddfem
@@ -17,6 +18,9 @@ struct ArmConstraint
 
   bool is_sessile() const { return normal.isZero(0); }
 };
+
+/// Two unit vectors that with the unit vector @p line make an orthonormal frame: what a sessile arm forbids.
+std::array<Vec3, 2> directions_across(const Vec3 &line);
 
 /// The constraint of arm @p s.
 ArmConstraint arm_constraint(const Network &network, SegmentIndex s);

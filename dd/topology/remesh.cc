@@ -79,17 +79,14 @@ void balance(TopologyContext &context, const Corner &corner)
 }
 
 /// Whether the network has been changed.
-bool improve(TopologyContext &context, const NodeIndex i)
+bool improve(TopologyContext &context, const Corner &corner)
 {
   const Network &network = context.network;
   const TopologySettings &settings = context.settings;
-  if (!is_discretisation_node(network, i))
-    return false;
-  const Corner corner = corner_at(network, i);
   const bool too_short = corner.shorter() < settings.min_segment;
   if ((too_short && corner.joined() <= longest_after_short(settings)) || is_flat(network, corner, settings))
   {
-    remove_node(context, i);
+    remove_node(context, corner.node);
     ++context.counts.coarsenings;
     return true;
   }
@@ -125,7 +122,7 @@ void coarsen(TopologyContext &context)
     std::vector<NodeIndex> again;
     for (const NodeIndex i : nodes)
       if (network.contains(i) && is_discretisation_node(network, i))
-        if (const Corner corner = corner_at(network, i); improve(context, i))
+        if (const Corner corner = corner_at(network, i); improve(context, corner))
           for (const NodeIndex neighbour : {corner.a, corner.c})
             append_surroundings(network, neighbour, again);
     std::ranges::sort(again, {}, &NodeIndex::value);

@@ -1,5 +1,7 @@
 #include "dd/topology/collisions/candidate_list.h"
 
+#include "dd/topology/collisions/common_node.h"
+
 #include <omp.h>
 
 #include <algorithm>
@@ -25,12 +27,6 @@ constexpr double rounding = 1e-9;
 double norm_of(std::span<const Vec3> displacement, NodeIndex i)
 {
   return i.value < displacement.size() ? displacement[i.value].norm() : 0.0;
-}
-
-bool share_node(const Network &network, SegmentIndex a, SegmentIndex b)
-{
-  const NodeIndex i = network.start(a), j = network.end(a), k = network.start(b), l = network.end(b);
-  return i == k || i == l || j == k || j == l;
 }
 
 /// The value that one in one_in_unusual of about 16 000 evenly picked ones exceed.
@@ -265,7 +261,7 @@ void CandidateList::find_pairs_of_grid(const Network &network)
     const auto accept = [&](std::uint32_t i, std::uint32_t j)
     {
       const SegmentIndex a = grid_.segment(i), b = grid_.segment(j);
-      if (a == b || share_node(network, a, b))
+      if (a == b || common_node(network, a, b))
         return;
       const double gap = grid_.nearest_gap(i, j);
       if (std::isnan(gap))
@@ -295,7 +291,7 @@ std::vector<CandidatePair> CandidateList::pairs_of_inserted(const Network &netwo
   const auto take = [&](SegmentIndex t, std::uint32_t number)
   {
     // Of two segments entered together, the later one finds the other.
-    if (is_current(network, t, number) && (number < first || number < number_[s.value]) && !share_node(network, s, t))
+    if (is_current(network, t, number) && (number < first || number < number_[s.value]) && !common_node(network, s, t))
       others.push_back(t);
   };
   for (const Sphere &sphere : spheres_of(network, s))

@@ -1,6 +1,7 @@
 #include "dd/topology/collisions/collision_events.h"
 
 #include "dd/elasticity/distance.h"
+#include "dd/topology/collisions/common_node.h"
 #include "dd/topology/collisions/contact.h"
 
 #include <algorithm>
@@ -31,14 +32,6 @@ std::pair<MovingSegment, MovingSegment> moving_pair(const TopologyContext &c, co
   mb.start += shift;
   mb.end += shift;
   return {ma, mb};
-}
-
-std::optional<NodeIndex> common_node(const Network &n, const SegmentIndex a, const SegmentIndex b)
-{
-  for (const NodeIndex i : {n.start(a), n.end(a)})
-    if (i == n.start(b) || i == n.end(b))
-      return i;
-  return std::nullopt;
 }
 
 CollisionEvent make_event(const Network &n, const SegmentIndex a, const SegmentIndex b, const Contact &contact)

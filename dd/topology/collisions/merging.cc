@@ -1,6 +1,7 @@
 #include "dd/topology/collisions/merging.h"
 
 #include "dd/forces/virtual_rays.h"
+#include "dd/mobility/glide_constraints.h"
 #include "dd/topology/line_operations.h"
 
 #include <algorithm>
@@ -71,8 +72,8 @@ void append_forbidden(const TopologyContext &c, const SegmentIndex s, const doub
     return;
   }
   const Vec3 xi = n.minimum_image(c.position_at(n.end(s), t) - c.position_at(n.start(s), t)).normalized();
-  const Vec3 across = xi.unitOrthogonal();
-  directions.insert(directions.end(), {across, xi.cross(across)});
+  const auto across = directions_across(xi);
+  directions.insert(directions.end(), across.begin(), across.end());
 }
 
 std::vector<Vec3> forbidden_directions(const TopologyContext &c, const End &e, const double t)

@@ -1,6 +1,7 @@
 #include "dd/topology/collisions/proximity_collisions.h"
 
 #include "dd/elasticity/distance.h"
+#include "dd/topology/collisions/common_node.h"
 #include "dd/topology/collisions/merging.h"
 
 #include <algorithm>
@@ -60,14 +61,6 @@ std::optional<NearPoints> find_near_hinge(const TopologyContext &c, const Segmen
   const auto from_o = [&](const SegmentIndex s, const double v) { return n.start(s) == o ? v : 1 - v; };
   return NearPoints{from_o(s1, first_is_shorter ? 1.0 : u), from_o(s2, first_is_shorter ? u : 1.0),
                     first_is_shorter ? separation : Vec3(-separation)};
-}
-
-std::optional<NodeIndex> common_node(const Network &n, const SegmentIndex s1, const SegmentIndex s2)
-{
-  for (const NodeIndex i : {n.start(s1), n.end(s1)})
-    if (i == n.start(s2) || i == n.end(s2))
-      return i;
-  return std::nullopt;
 }
 
 /// Nearest points of two different segments within @p r, with or without a common node.

@@ -115,29 +115,6 @@ public:
     return sum;
   }
 
-  std::size_t nodes_with_degree(const std::size_t degree) const
-  {
-    std::size_t n = 0;
-    for (const NodeIndex i : network.nodes())
-      n += network.degree(i) == degree ? 1 : 0;
-    return n;
-  }
-
-  /// Persistent id of the node where the line without branches ends that starts at pinned node @p id.
-  ObjectId other_end_of_line(const ObjectId id) const
-  {
-    NodeIndex k = *network.find_node(id);
-    SegmentIndex s = network.connected_segments(k)[0];
-    k = network.other_end(s, k);
-    while (network.degree(k) == 2 && network.constraint(k) != NodeConstraint::pinned)
-    {
-      const auto arms = network.connected_segments(k);
-      s = arms[0] == s ? arms[1] : arms[0];
-      k = network.other_end(s, k);
-    }
-    return network.id(k);
-  }
-
   const SlipSystems &systems;
   double length; ///< of each line, nm
   std::vector<CrossingLine> lines;
@@ -321,7 +298,7 @@ inline void expect_separate_lines(const CrossingLines &c)
   EXPECT_EQ(c.nodes_with_degree(3) + c.nodes_with_degree(4), 0U);
   for (const CrossingLine &l : c.lines)
   {
-    EXPECT_EQ(c.other_end_of_line(l.ends[0]), l.ends[1]);
+    EXPECT_EQ(c.other_end_of_line(*c.network.find_node(l.ends[0])), l.ends[1]);
     const NodeIndex first = *c.network.find_node(l.ends[0]);
     const SegmentIndex s = c.network.connected_segments(first)[0];
     EXPECT_LT((c.network.burgers_from(s, first) - l.burgers).norm(), 1e-12);
@@ -337,7 +314,7 @@ inline void expect_annihilated(const CrossingLines &c)
   for (std::size_t k = 0; k < 2; ++k)
     for (const ObjectId end : c.lines[k].ends)
     {
-      const ObjectId far = c.other_end_of_line(end);
+      const ObjectId far = c.other_end_of_line(*c.network.find_node(end));
       const auto &other = c.lines[1 - k].ends;
       EXPECT_TRUE(far == other[0] || far == other[1]);
     }

@@ -73,28 +73,6 @@ public:
     return (q - product()).norm() < 1e-6 || (q + product()).norm() < 1e-6;
   }
 
-  std::size_t nodes_with_degree(const std::size_t degree) const
-  {
-    std::size_t n = 0;
-    for (const NodeIndex i : network.nodes())
-      n += network.degree(i) == degree ? 1 : 0;
-    return n;
-  }
-
-  /// Persistent id of the node at the end of the line without branches that starts at pinned node @p i.
-  ObjectId other_end_of_line(const NodeIndex i) const
-  {
-    SegmentIndex s = network.connected_segments(i)[0];
-    NodeIndex k = network.other_end(s, i);
-    while (network.degree(k) == 2 && network.constraint(k) != NodeConstraint::pinned)
-    {
-      const auto arms = network.connected_segments(k);
-      s = arms[0] == s ? arms[1] : arms[0];
-      k = network.other_end(s, k);
-    }
-    return network.id(k);
-  }
-
   std::array<SlipSystem, 2> systems;
   std::array<Vec3, 2> b;
   Vec3 e; ///< unit vector along both planes
