@@ -2,7 +2,9 @@
 
 #include "coupling/convert.h"
 #include "coupling/dislocation_tractions.h"
+#include "coupling/image_planes.h"
 #include "coupling/input_error.h"
+#include "dd/common/parallel.h"
 #include "dd/elasticity/triangle_displacement.h"
 #include "dd/topology/growth.h"
 
@@ -97,6 +99,7 @@ FiniteGrain::FiniteGrain(const GrainParameters &grain_parameters, const Isotropi
     throw InputError(std::string("Domain: ") + e.what());
   }
   find_platens(parameters);
+  find_image_planes();
   const bool clamped = parameters.clamped;
   const std::array<bool, 3> components{clamped || axis == 0, clamped || axis == 1, clamped || axis == 2};
   problem = std::make_unique<fem::ElasticProblem>(
@@ -163,16 +166,47 @@ void FiniteGrain::find_platens(const GrainParameters &p)
   gauge_length = std::abs(high.position - low.position);
 }
 
+void FiniteGrain::find_image_planes()
+{
+  const auto facets = facets_of(*mesh);
+  planes_of_images = image_planes(facets, {static_cast<int>(fixed_face), static_cast<int>(platen_face)});
+  image_settings.depth = parameters.image_depth * facet_size(facets, planes_of_images);
+}
+
+void FiniteGrain::update_images(const LineSystem &lines)
+{
+  images = SurfaceImages(lines, planes_of_images, image_settings);
+}
+
+std::vector<dealii::Tensor<1, 3>> FiniteGrain::image_displacement() const
+{
+  std::vector<dealii::Tensor<1, 3>> u;
+  for (const Vec3 &v : images.displacement(boundary_nodes()))
+    u.push_back(to_tensor(v));
+  return u;
+}
+
 std::vector<dealii::Tensor<1, 3>> FiniteGrain::prescribed(const double u) const
 {
+  // Elsewhere the values are not read: the images are only evaluated where they are.
+  std::vector<Vec3> nodes;
+  std::vector<std::size_t> index;
   std::vector<dealii::Tensor<1, 3>> values(problem->boundary_points().size());
   for (std::size_t i = 0; i < values.size(); ++i)
   {
+    const auto &components = problem->prescribed_components()[i];
+    if (!components[0] && !components[1] && !components[2])
+      continue;
+    nodes.push_back(to_vec3(problem->boundary_points()[i]));
+    index.push_back(i);
     values[i] = reference_correction[i] - infinite_displacement[i];
     const auto &ids = problem->boundary_ids()[i];
     if (std::find(ids.begin(), ids.end(), platen_face) != ids.end())
       values[i][static_cast<unsigned>(axis)] += platen_sign * u;
   }
+  const std::vector<Vec3> of_images = images.displacement(nodes);
+  for (std::size_t k = 0; k < index.size(); ++k)
+    values[index[k]] -= to_tensor(of_images[k]);
   return values;
 }
 
@@ -189,9 +223,13 @@ void FiniteGrain::set_reference(const Network &network, const LineSystem &lines)
 void FiniteGrain::relax(const LineSystem &lines)
 {
   fem::ElasticProblem free_grain(*mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu}, {});
-  free_grain.set_tractions(DislocationTractions(lines));
+  update_images(lines);
+  free_grain.set_tractions(DislocationTractions(lines, &images));
   free_grain.solve(std::vector<dealii::Tensor<1, 3>>(free_grain.boundary_points().size()));
   reference_correction = free_grain.boundary_displacements();
+  const auto of_images = image_displacement();
+  for (std::size_t i = 0; i < of_images.size(); ++i)
+    reference_correction[i] += of_images[i];
 }
 
 void FiniteGrain::add_swept(const SweptArea &area)
@@ -212,7 +250,8 @@ void FiniteGrain::add_swept(const SweptArea &area)
 GrainSolution FiniteGrain::solve(const LineSystem &lines, const double u)
 {
   GrainSolution solution;
-  solution.tractions = problem->set_tractions(DislocationTractions(lines));
+  update_images(lines);
+  solution.tractions = problem->set_tractions(DislocationTractions(lines, &images));
   const double diameter = grain_shape->diameter();
   std::tie(solution.force_imbalance, solution.moment_imbalance) =
       imbalance(solution.tractions, medium.mu * medium.a * diameter, diameter);
@@ -233,7 +272,32 @@ std::vector<SymTensor> FiniteGrain::correction_stress(const std::vector<Vec3> &p
   result.reserve(points.size());
   for (const auto &s : problem->stress_at(positions))
     result.push_back(to_sym_tensor(s));
+  if (images.empty())
+    return result;
+  std::vector<SymTensor> of_images(points.size());
+  const IndexRange owned = owned_range(points.size(), communicator);
+  const auto mine = images.stress(std::span(points).subspan(owned.begin, owned.end - owned.begin));
+  std::copy(mine.begin(), mine.end(), of_images.begin() + static_cast<std::ptrdiff_t>(owned.begin));
+  gather_owned(of_images, communicator);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    result[k] += of_images[k];
   return result;
+}
+
+SegmentField FiniteGrain::correction_at_segments(const Network &network) const
+{
+  SegmentPoints::SmoothLength smooth_length;
+  if (image_settings.depth > 0)
+    smooth_length = [&](const Vec3 &x)
+    {
+      double depth = image_settings.depth;
+      for (const ImagePlane &p : planes_of_images)
+        depth = std::min(depth, (p.point - x).dot(p.outward));
+      return std::max(depth, 0.0) + medium.a;
+    };
+  SegmentField field{SegmentPoints(network, smooth_length), {}};
+  field.stress = correction_stress(field.points.positions());
+  return field;
 }
 
 std::vector<Vec3> FiniteGrain::boundary_nodes() const
@@ -247,18 +311,18 @@ std::vector<Vec3> FiniteGrain::boundary_nodes() const
 std::vector<Vec3> FiniteGrain::boundary_displacement() const
 {
   std::vector<Vec3> u;
-  const auto correction = problem->boundary_displacements();
+  const auto correction = problem->boundary_displacements(), of_images = image_displacement();
   for (std::size_t i = 0; i < correction.size(); ++i)
-    u.push_back(to_vec3(correction[i] + infinite_displacement[i]));
+    u.push_back(to_vec3(correction[i] + of_images[i] + infinite_displacement[i]));
   return u;
 }
 
 std::string FiniteGrain::write(const std::string &directory, const std::string &name) const
 {
   // Displacements are counted from the reference state, like the prescribed ones.
-  std::vector<dealii::Tensor<1, 3>> extra(infinite_displacement.size());
+  std::vector<dealii::Tensor<1, 3>> extra = image_displacement();
   for (std::size_t i = 0; i < extra.size(); ++i)
-    extra[i] = infinite_displacement[i] - reference_correction[i];
+    extra[i] += infinite_displacement[i] - reference_correction[i];
   return problem->write_surface(directory, name, extra);
 }
 } // namespace ddfem::coupling

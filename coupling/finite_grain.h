@@ -3,6 +3,8 @@
 
 #include "coupling/parameters.h"
 #include "dd/forces/line_system.h"
+#include "dd/forces/segment_points.h"
+#include "dd/forces/surface_images.h"
 #include "dd/geometry/grain_shape.h"
 #include "dd/topology/swept_area.h"
 #include "fem/elastic_problem.h"
@@ -53,9 +55,12 @@ public:
   void add_swept(const SweptArea &area);
   /// Solves for the correction at platen displacement @p u (nm, along the outward normal of the platen).
   GrainSolution solve(const LineSystem &lines, double u);
-  /// Correction stress at points inside the grain, MPa; the same bits on all ranks.
+  /// Correction stress at points inside the grain, MPa: finite elements and images of the last solve; the same bits on all
+  /// ranks.
   std::vector<SymTensor> correction_stress(const std::vector<Vec3> &points) const;
-  /// u~ + u^ at the boundary nodes of this rank, and these nodes, nm.
+  /// The same at the segments of a network, at points that are dense enough for the images near the surface.
+  SegmentField correction_at_segments(const Network &network) const;
+  /// u~ + u^ at the boundary nodes of this rank since the reference state, and these nodes, nm.
   std::vector<Vec3> boundary_displacement() const;
   std::vector<Vec3> boundary_nodes() const;
   /// Writes the deformed surface; returns the file written.
@@ -65,6 +70,9 @@ private:
   void find_platens(const GrainParameters &parameters);
   void build_shape(const GrainParameters &parameters);
   void relax(const LineSystem &lines);
+  void find_image_planes();
+  void update_images(const LineSystem &lines);
+  std::vector<dealii::Tensor<1, 3>> image_displacement() const;
   std::vector<dealii::Tensor<1, 3>> prescribed(double u) const;
 
   GrainParameters parameters;
@@ -78,7 +86,10 @@ private:
   double gauge_length = 0, platen_area = 0, modulus = 0;
   std::unique_ptr<GrainShape> grain_shape;
   std::unique_ptr<fem::ElasticProblem> problem;
-  std::vector<dealii::Tensor<1, 3>> reference_correction;  ///< u^(0) at the boundary nodes
+  std::vector<ImagePlane> planes_of_images;
+  ImageSettings image_settings;
+  SurfaceImages images;                                    ///< of the lines of the last solve
+  std::vector<dealii::Tensor<1, 3>> reference_correction;  ///< u^(0), images included, at the boundary nodes
   std::vector<dealii::Tensor<1, 3>> infinite_displacement; ///< u~ since the reference, at the boundary nodes
 };
 

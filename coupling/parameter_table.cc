@@ -118,6 +118,9 @@ void add_domain(std::vector<ParameterEntry> &t)
       {s, "Elastic tolerance", "1e-7", between(1e-14, 1e-2), "", "Residual of the FEM solve relative to its load."});
   t.push_back({s, "Traction tolerance", "1e-6", between(1e-12, 1e-2), "",
                "Relative error aimed at in the integrals of the infinite-body tractions over the boundary."});
+  t.push_back({s, "Image depth", "4", not_negative(), "element edges",
+               "Segments nearer than this many element edges to a flat free face get analytic images; 0: none. "
+               "Faces must have the whole grain on one side and must not be held."});
 }
 
 void add_boundary(std::vector<ParameterEntry> &t)

@@ -165,6 +165,7 @@ void read_grain(const InputDeck &deck, Parameters &p)
   p.grain.elasticity.degree = deck.integer("Domain/Element degree");
   p.grain.elasticity.relative_tolerance = deck.number("Domain/Elastic tolerance");
   p.grain.elasticity.traction_tolerance = deck.number("Domain/Traction tolerance");
+  p.grain.image_depth = deck.number("Domain/Image depth");
   p.grain.fixed_face = deck.text("Boundary conditions/Fixed face");
   p.grain.platen_face = deck.text("Boundary conditions/Platen face");
   p.grain.clamped = deck.text("Boundary conditions/Platen contact") == "clamped";

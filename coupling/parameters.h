@@ -42,6 +42,7 @@ struct GrainParameters
   std::vector<std::string> impenetrable_faces;
   ReferenceState reference = ReferenceState::relaxed;
   RayDirection ray_direction = RayDirection::normal;
+  double image_depth = 4; ///< lines nearer than this many elements to a flat free face get analytic images
 };
 
 enum class LoadingType

@@ -137,7 +137,7 @@ void Simulation::update_correction()
     throw std::runtime_error("the tractions of the dislocations over the closed surface do not balance: net force " +
                              std::to_string(solution.force_imbalance) + ", net moment " +
                              std::to_string(solution.moment_imbalance) + " of the sum of their magnitudes");
-  correction = finite_grain->correction_stress(segment_points(dislocations));
+  correction = finite_grain->correction_at_segments(dislocations);
 }
 
 void Simulation::start()
@@ -185,7 +185,7 @@ void Simulation::change_topology(TopologyContext &context)
               [&](const Network &n)
               {
                 if (finite_grain)
-                  correction = finite_grain->correction_stress(segment_points(n));
+                  correction = finite_grain->correction_at_segments(n);
                 return compute_nodal_forces(n, parameters.force_settings(), environment(), communicator);
               });
   remesh(context);

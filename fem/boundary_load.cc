@@ -162,7 +162,10 @@ std::vector<BoundaryLoad::Piece> BoundaryLoad::divide(const TractionField &field
       radii.push_back(piece.radius);
     }
     lengths.assign(active.size(), 0.);
-    field.smooth_lengths(centres, radii, lengths);
+    std::vector<dealii::types::boundary_id> boundaries;
+    for (const Piece &piece : active)
+      boundaries.push_back(grid.faces[piece.face].boundary);
+    field.smooth_lengths(centres, radii, boundaries, lengths);
     next.clear();
     for (std::size_t i = 0; i < active.size(); ++i)
     {
@@ -206,7 +209,10 @@ TractionSummary BoundaryLoad::add_field(const TractionField &field, NodalVector 
     points.push_back(s.position);
   }
   std::vector<dealii::SymmetricTensor<2, 3>> stresses(points.size());
-  field.stress(points, stresses);
+  std::vector<dealii::types::boundary_id> boundaries;
+  for (const unsigned face : faces)
+    boundaries.push_back(grid.faces[face].boundary);
+  field.stress(points, boundaries, stresses);
   NodalVector integral(grid.partitioner);
   for (std::size_t i = 0; i < samples.size(); ++i)
   {

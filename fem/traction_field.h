@@ -3,6 +3,7 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
+#include <deal.II/base/types.h>
 
 #include <cstdint>
 #include <vector>
@@ -17,22 +18,25 @@ public:
 
   /// Lower bound (nm) of the distance between any point of the ball (centre, radius) and the nearest singularity of the
   /// field (for a regularised field the core radius at least). May be infinite; zero or less means nothing is known.
-  virtual double smooth_length(const dealii::Point<3> &centre, double radius) const = 0;
+  virtual double smooth_length(const dealii::Point<3> &centre, double radius,
+                               dealii::types::boundary_id boundary) const = 0;
 
   /// smooth_length() of many balls; override it when the whole batch can be had faster (threads). `lengths` has the
   /// right size on entry. Not collective: ranks call it as often as their faces need.
   virtual void smooth_lengths(const std::vector<dealii::Point<3>> &centres, const std::vector<double> &radii,
+                              const std::vector<dealii::types::boundary_id> &boundaries,
                               std::vector<double> &lengths) const
   {
     for (std::size_t i = 0; i < centres.size(); ++i)
     {
-      lengths[i] = smooth_length(centres[i], radii[i]);
+      lengths[i] = smooth_length(centres[i], radii[i], boundaries[i]);
     }
   }
 
   /// Stresses (MPa) at points (nm). `values` has the size of `points` on entry. Called by every rank with its own
   /// points, the same number of times on all ranks, possibly with none: collective implementations are allowed.
   virtual void stress(const std::vector<dealii::Point<3>> &points,
+                      const std::vector<dealii::types::boundary_id> &boundaries,
                       std::vector<dealii::SymmetricTensor<2, 3>> &values) const = 0;
 };
 

@@ -102,15 +102,14 @@ struct DisplacementSums
   }
 };
 
-/// d_c psi + zeta (e . grad) Lambda at x relative to the mirrored source point.
-void add_element(StressSums &sums, const Vec3 &x, const double a2, const Vec3 &c, const Vec3 &e, const double zeta)
+/// (c . grad) psi + (along . grad) Lambda at x relative to the mirrored source point.
+void add_element(StressSums &sums, const Vec3 &x, const Vec3 &c, const Vec3 &along)
 {
-  const Radii k(x, a2);
+  const Radii k(x, 0.0);
   const double v7 = k.v5 * k.v2;
   sums.add_tangential(x, c, k.psi_q, k.psi_r, k.lambda_q, k.lambda_r);
   sums.add_normal(x, c, -k.v3, 3 * k.v5);
   // Lambda: tangential derivatives, and V_,ij from its z-derivative.
-  const Vec3 along = zeta * e;
   sums.add_tangential(x, along, k.lambda_q, k.lambda_r, 3 * k.v5, -15 * v7);
   const double z = x[2], ez = along[2];
   sums.add_normal(x, along, 3 * k.v5 * z, -15 * v7 * z);
@@ -125,12 +124,10 @@ void add_element(StressSums &sums, const Vec3 &x, const double a2, const Vec3 &c
   sums.yzz += zzz * x[1];
 }
 
-/// The same for the displacement.
-void add_element(DisplacementSums &sums, const Vec3 &x, const double a2, const Vec3 &c, const Vec3 &e,
-                 const double zeta, const double weight)
+/// The same for the displacement, times @p weight.
+void add_element(DisplacementSums &sums, const Vec3 &x, const Vec3 &c, const Vec3 &along, const double weight)
 {
-  const Radii k(x, a2);
-  const Vec3 along = zeta * e;
+  const Radii k(x, 0.0);
   const double cx = c[0] * x[0] + c[1] * x[1], ex = along[0] * x[0] + along[1] * x[1], ez = along[2], z = x[2];
   const auto tangential = [&](const int i)
   { return -c[i] * k.s + cx * x[i] * k.psi_q + along[i] * k.lambda_p + ex * x[i] * k.lambda_q - ez * x[i] * k.v3; };
@@ -166,34 +163,41 @@ SegmentImage::SegmentImage(const IsotropicMedium &medium, const Vec3 &x1, const 
   t = mirrored(direction);
   e = m * mirrored(edge);
   c = Vec3(2 * direction[2] * b[1] - m * edge[0], -2 * direction[2] * b[0] - m * edge[1], 0.0);
+  core = -a2 * direction[2] * Vec3(b[1], -b[0], 0.0);
 }
 
 template <typename Add> void SegmentImage::for_each_point(const Vec3 &x, Add &&add) const
 {
   if (!(length > 0))
     return;
-  const auto singularities = internal::LineSingularities::of_point(x, std::sqrt(a2), start, t);
+  auto singularities = internal::LineSingularities::of_point(x, std::sqrt(a2), start, t);
+  if (t[2] != 0) // branch points of D
+    singularities.add(-start[2] / t[2], std::sqrt(a2) / std::abs(t[2]));
   internal::integrate_on_panels(singularities, length, quadrature_tolerance,
                                 [&](const double s, const double weight)
                                 {
                                   const Vec3 source = start + s * t;
-                                  add(Vec3(x - source), -source[2], weight);
+                                  const double depth = std::sqrt(source[2] * source[2] + a2);
+                                  const Vec3 r(x[0] - source[0], x[1] - source[1], x[2] + depth);
+                                  const Vec3 along = Vec3(depth * e[0], depth * e[1], -source[2] * e[2]) +
+                                                     (depth > 0 ? Vec3(core / depth) : core);
+                                  add(r, along, weight);
                                 });
 }
 
 SymTensor SegmentImage::stress(const Vec3 &x) const
 {
   StressSums sums;
-  for_each_point(x, [&](const Vec3 &r, const double depth, const double weight)
-                 { add_element(sums, r, a2, weight * c, weight * e, depth); });
+  for_each_point(x, [&](const Vec3 &r, const Vec3 &along, const double weight)
+                 { add_element(sums, r, weight * c, weight * along); });
   return mirror(x) + sums.stress(mu / (2 * std::numbers::pi), nu, x[2]);
 }
 
 Vec3 SegmentImage::displacement(const Vec3 &x) const
 {
   DisplacementSums sums;
-  for_each_point(x, [&](const Vec3 &r, const double depth, const double weight)
-                 { add_element(sums, r, a2, c, e, depth, weight); });
+  for_each_point(x, [&](const Vec3 &r, const Vec3 &along, const double weight)
+                 { add_element(sums, r, c, along, weight); });
   return triangle_displacement(nu, x, LoopVertex::at(start), LoopVertex::at(end), LoopVertex::towards(outward),
                                mirrored_burgers) +
          sums.displacement(mu / (2 * std::numbers::pi), mu, nu, x[2]);

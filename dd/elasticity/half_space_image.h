@@ -17,10 +17,13 @@
 //   phi = mu/(2 pi) int { c . grad psi + z'/(1-nu) (e_x d_x + e_y d_y - e_z d_z) Lambda } ds,
 //   e = b x t,   c = 2 t_z (b_y, -b_x) - (e_x, e_y)/(1-nu).
 //
-// The integral is taken by Gauss rules on panels. Rb is regularised with the core radius like R in the infinite-body
-// field. Image fields of the sum of closed lines are exact but for the core radius; each piece of line is in
-// equilibrium on its own if its mirror image is closed, which is why pieces come with *legs*: half-lines from their
-// ends into the depth, whose mirror images run away from the body.
+// In the non-singular theory the source points move to the depth D = sqrt(z'^2 + a^2): on the surface R_a is then the
+// singular R, and the surface stays free of tractions for any core radius. Z = z + D, D stands for z' in front of e_x and
+// e_y, and the screw part adds -(a^2/D) t_z (b_y d_x - b_x d_y) Lambda.
+//
+// The integral is taken by Gauss rules on panels. Each piece of line is in equilibrium on its own if its mirror image is
+// closed, which is why pieces come with *legs*: half-lines from their ends into the depth, whose mirror images run away
+// from the body.
 #pragma once
 
 #include "dd/common/types.h"
@@ -50,14 +53,16 @@ private:
 
   Vec3 start, end, mirrored_burgers;
   SegmentStressField mirror;
-  Vec3 t; // unit direction of the mirror image
-  Vec3 e; // (e_x, e_y, -e_z), nm
-  Vec3 c; // nm, third component zero
+  Vec3 t;    // unit direction of the mirror image
+  Vec3 e;    // (e_x, e_y, -e_z)/(1-nu), nm
+  Vec3 c;    // nm, third component zero
+  Vec3 core; // -a^2 t_z (b_y, -b_x, 0), nm^3
   double length, a2, mu, nu, quadrature_tolerance;
 };
 
 /// Image field of the half-line from @p x (z >= 0) to z = infinity, line sense away from @p x: a leg of the ends of a
-/// line. Needed where the flux of the Burgers vector of imaged segments ends.
+/// line. Needed where the flux of the Burgers vector of imaged segments ends, many core radii deep: the core radius only
+/// keeps it finite.
 class LegImage
 {
 public:

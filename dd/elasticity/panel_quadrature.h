@@ -34,6 +34,9 @@ public:
   /// Of the field of a ray.
   static LineSingularities of_ray(const Vec3 &origin, const Vec3 &direction, double a, const Vec3 &x3, const Vec3 &t);
 
+  /// Adds position +- i height; three in all.
+  void add(double position, double height) { singularities[n++] = {position, height}; }
+
   /// Size rho of the largest Bernstein ellipse of panel [@p begin, @p end] free of singularities.
   double ellipse(double begin, double end) const;
 

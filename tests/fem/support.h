@@ -150,9 +150,13 @@ public:
   {
   }
 
-  double smooth_length(const Point &centre, double radius) const override { return length_of(centre, radius); }
+  double smooth_length(const Point &centre, double radius, dealii::types::boundary_id) const override
+  {
+    return length_of(centre, radius);
+  }
 
-  void stress(const std::vector<Point> &points, std::vector<Stress> &values) const override
+  void stress(const std::vector<Point> &points, const std::vector<dealii::types::boundary_id> &,
+              std::vector<Stress> &values) const override
   {
     for (std::size_t i = 0; i < points.size(); ++i)
     {

@@ -86,7 +86,7 @@ Integrals brute_force(const TractionField &field, double edge, double foot, cons
         x[(axis + 2) % 3] = edge * t;
         Vector area;
         area[axis] = (face % 2 == 0 ? -1. : 1.) * edge * edge * ws * wt;
-        field.stress({x}, value);
+        field.stress({x}, {0}, value);
         const Vector force = value[0] * area;
         result.force += force;
         result.moment += cross_product_3d(x - centre, force);

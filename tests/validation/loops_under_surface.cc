@@ -4,10 +4,9 @@
 #include "coupling/dislocation_tractions.h"
 #include "dd/forces/line_system.h"
 #include "fem/elastic_problem.h"
+#include "graded_box.h"
 #include "support.h"
 
-#include <deal.II/distributed/tria.h>
-#include <deal.II/grid/grid_generator.h>
 #include <nlohmann/json.hpp>
 
 #include <fstream>
@@ -17,37 +16,11 @@ using namespace ddfem::validation;
 
 namespace
 {
-using Mesh = dealii::parallel::distributed::Triangulation<3>;
-
-/// Element sizes from the fine middle of half-width @p fine outwards to @p half_width, growing by 2.
-std::vector<double> graded(const double h, const double fine, const double half_width)
-{
-  std::vector<double> sizes(static_cast<std::size_t>(std::lround(fine / h)), h);
-  double x = fine, size = h;
-  while (x < half_width)
-  {
-    size *= 2;
-    sizes.push_back(size);
-    x += size;
-  }
-  return sizes;
-}
-
 /// Box z > 0 with its free surface at z = 0, element size @p h near the origin.
 std::unique_ptr<Mesh> graded_box(const double h)
 {
-  const auto half = graded(h, 3.0, 35), depth = graded(h, 6.0, 70);
-  std::vector<double> across(half.rbegin(), half.rend());
-  across.insert(across.end(), half.begin(), half.end());
-  double w = 0, d = 0;
-  for (const double s : half)
-    w += s;
-  for (const double s : depth)
-    d += s;
-  auto mesh = std::make_unique<Mesh>(MPI_COMM_WORLD);
-  dealii::GridGenerator::subdivided_hyper_rectangle(*mesh, {across, across, depth}, dealii::Point<3>(-w, -w, 0),
-                                                    dealii::Point<3>(w, w, d), true);
-  return mesh;
+  const auto across = graded_both_ways(h, 3.0, 35);
+  return box_of(across, across, graded(h, 6.0, 70));
 }
 
 Vec3 vector_of(const nlohmann::json &j)

@@ -111,6 +111,24 @@ TEST(HalfSpaceImage, OfAClosedLoopFreesTheSurfaceToTheToleranceOfItsQuadrature)
               tolerance);
 }
 
+TEST(HalfSpaceImage, OfAClosedLoopFreesTheSurfaceForAnyCoreRadius)
+{
+  const std::vector<Vec3> loop{{0.2, 0.1, 0.05}, {-0.6, 0.3, 0.3}, {-0.1, -0.5, 0.9}, {0.4, -0.2, 0.4}};
+  const Vec3 b(0.1, -0.2, 0.15);
+  for (const double a : {0.01, 0.1, 0.5})
+  {
+    const IsotropicMedium m{50e3, 0.3, a};
+    const auto infinite = [&](const Vec3 &x)
+    {
+      SymTensor sum = SymTensor::Zero();
+      for (std::size_t k = 0; k < loop.size(); ++k)
+        sum += segment_stress(m, x, loop[k], loop[(k + 1) % loop.size()], b);
+      return sum;
+    };
+    EXPECT_LT(remaining_traction(infinite, [&](const Vec3 &x) { return image_of_loop(m, loop, b, x, 1e-9); }), 1e-9);
+  }
+}
+
 TEST(HalfSpaceImage, OfAHalfLoopWithRaysAlongTheNormalFreesTheSurface)
 {
   const IsotropicMedium m{50e3, 0.3, 0.0};
