@@ -1,14 +1,8 @@
 // Image forces near a free surface, from ten elements deep to a fifth of an element: straight edge and screw along the surface
 // (F/L = mu b^2/(4 pi (1-nu) d), mu b^2/(4 pi d)), and triangular loops (tests/data/halfspace_loops.json), with the
 // analytic images of the lines under the face and without.
-#include "coupling/convert.h"
-#include "coupling/dislocation_tractions.h"
 #include "coupling/parameters.h"
-#include "dd/forces/line_system.h"
-#include "dd/forces/surface_images.h"
-#include "fem/elastic_problem.h"
-#include "graded_box.h"
-#include "support.h"
+#include "image_field.h"
 
 #include <nlohmann/json.hpp>
 
@@ -21,38 +15,6 @@ namespace
 {
 const std::vector<ImagePlane> top{{4, Vec3::Zero(), -Vec3::UnitZ()}};
 
-/// The correction problem of some lines under the face z = 0.
-class Correction
-{
-public:
-  Correction(const Mesh &mesh, const IsotropicMedium &m, const unsigned degree, const LineSystem &lines,
-             const double image_depth, const std::vector<fem::DisplacementCondition> &conditions)
-      : images(lines, top, {image_depth, 1e-6})
-  {
-    fem::ElasticProblem::Parameters p;
-    p.degree = degree;
-    p.max_iterations = 10000; // elements 256 times longer than wide
-    problem = std::make_unique<fem::ElasticProblem>(mesh, p, fem::Moduli{m.mu, m.nu}, conditions);
-    problem->set_tractions(coupling::DislocationTractions(lines, &images));
-    std::vector<Vec3> nodes;
-    for (const auto &x : problem->boundary_points())
-      nodes.push_back(coupling::to_vec3(x));
-    std::vector<dealii::Tensor<1, 3>> prescribed;
-    for (const Vec3 &u : images.displacement(nodes))
-      prescribed.push_back(-coupling::to_tensor(u));
-    problem->solve(prescribed);
-  }
-
-  SymTensor stress(const Vec3 &x) const
-  {
-    return coupling::to_sym_tensor(problem->stress_at({coupling::to_point(x)})[0]) + images.stress(x);
-  }
-
-private:
-  SurfaceImages images;
-  std::unique_ptr<fem::ElasticProblem> problem;
-};
-
 /// Relative error of the force on a line along y at depth @p d, element size 1. A line that goes on as it is beyond y- and y+ sees
 /// plane strain if these are held along y, antiplane shear if they are held across it.
 double force_error(const Mesh &mesh, const unsigned degree, const double d, const bool screw, const double image_depth)
@@ -64,15 +26,18 @@ double force_error(const Mesh &mesh, const unsigned degree, const double d, cons
   add_line(network, {Vec3(0, -half, d), Vec3(0, half, d)}, burgers, {}, false, NodeConstraint::pinned);
   const LineSystem lines(m, network, nullptr, RayDirection::normal, nullptr, nullptr);
   const std::array<bool, 3> held{screw, !screw, screw};
-  const Correction correction(mesh, m, degree, lines, image_depth, {{2, held}, {3, held}});
-  const Vec3 force = contract(correction.stress(Vec3(0, 0, d)), burgers).cross(Vec3::UnitY());
+  ImageField image(mesh, degree, {{2, held}, {3, held}}, m);
+  image.solve(lines, {}, top, image_depth);
+  const Vec3 force = image.force_per_length(Vec3(0, 0, d), Vec3::UnitY(), burgers);
   const double exact = -m.mu * b * b / (4 * M_PI * d) / (screw ? 1 : 1 - m.nu); // towards the surface
   return force[2] / exact - 1;
 }
 
 void straight_lines(Report &report, const double image_depth, const unsigned degree, const bool print_only)
 {
-  const auto mesh = box_of(graded_both_ways(1, 6, 700), {4}, graded(1, 12, 1000));
+  const auto half = graded(1, 4, 300), depth = graded(1, 12, 1000);
+  const double width = std::accumulate(half.begin(), half.end(), 0.0);
+  const auto mesh = box_mesh({mirrored(half), {4}, depth}, Vec3(-width, -2, 0));
   for (const bool screw : {true, false})
     for (const double d : {10.0, 7.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.5, 0.2})
     {
@@ -106,11 +71,16 @@ double loop_error(const nlohmann::json &test, const Mesh &mesh, const double ima
     corners.push_back(vector_of(v));
   add_line(network, corners, vector_of(test["b"]), {}, true, NodeConstraint::free);
   const LineSystem lines(m, network, nullptr, RayDirection::normal, nullptr, nullptr);
-  const Correction correction(mesh, m, 2, lines, image_depth, {});
+  ImageField image(mesh, 2, {}, m);
+  image.solve(lines, {}, top, image_depth);
+  std::vector<Vec3> points;
+  for (const auto &x : test["points"])
+    points.push_back(vector_of(x));
+  const auto stress = image.stress(points);
   double error = 0, scale = 0;
-  for (std::size_t k = 0; k < test["points"].size(); ++k)
+  for (std::size_t k = 0; k < points.size(); ++k)
   {
-    const SymTensor computed = correction.stress(vector_of(test["points"][k]));
+    const SymTensor &computed = stress[k];
     for (std::size_t c = 0; c < 6; ++c)
     {
       const double expected = test["image_stress"][k][c].get<double>();
@@ -128,8 +98,7 @@ void loops(Report &report, const double image_depth)
   // Loops at depths of 2 to 3.5: half an element and more where elements are 4 long.
   for (const double h : {4.0, 2.0})
   {
-    const auto across = graded_both_ways(h, 2 * h, 150);
-    const auto mesh = box_of(across, across, graded(h, 4 * h, 300));
+    const auto mesh = half_space_mesh(h, 3 * h);
     for (std::size_t k = 0; k < reference["cases"].size(); ++k)
     {
       char row[120];
@@ -143,7 +112,7 @@ void loops(Report &report, const double image_depth)
 
 int main(int argc, char **argv)
 {
-  const bool study = argc > 1; // with and without images
+  const bool study = study_requested(argc, argv); // with and without images
   return run(argc, argv,
              [&](Report &report)
              {
