@@ -2,91 +2,100 @@
 
 #include "coupling/convert.h"
 #include "dd/elasticity/distance.h"
-#include "dd/elasticity/segment_stress.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace ddfem::coupling
 {
-std::size_t DislocationTractions::n_sources() const
+DislocationTractions::DislocationTractions(const LineSystem &system, const SurfaceImages *surface_images)
+    : line_system(system), images(surface_images), ray_list(system.rays())
 {
-  const std::size_t n = line_system.lines().size() + line_system.rays().size();
-  return surface_images ? n + surface_images->n_images() + surface_images->remaining_legs().size() : n;
+  const IsotropicMedium &medium = system.medium();
+  lines.reserve(system.lines().size());
+  for (const StraightLine &l : system.lines())
+    lines.emplace_back(medium, l.start, l.end, l.burgers);
+  if (images)
+    for (const auto &leg : images->remaining_legs())
+      ray_list.push_back(leg.ray);
+  rays.reserve(ray_list.size());
+  for (const VirtualRay &r : ray_list)
+    rays.emplace_back(medium, r.origin, r.direction, r.burgers);
 }
 
-bool DislocationTractions::vanishes_on(std::size_t i, const dealii::types::boundary_id boundary) const
+unsigned DislocationTractions::n_sources() const
 {
-  if (!surface_images)
+  return static_cast<unsigned>(lines.size() + rays.size() + (images ? images->n_images() : 0));
+}
+
+bool DislocationTractions::vanishes_on(const unsigned source, const dealii::types::boundary_id boundary) const
+{
+  if (!images)
     return false;
   const int face = static_cast<int>(boundary);
-  if (i < line_system.lines().size())
-    return surface_images->is_freed_of_line(i, face);
-  i -= line_system.lines().size();
-  if (i < line_system.rays().size())
-    return surface_images->is_freed_of_ray(i, face);
-  i -= line_system.rays().size();
-  if (i < surface_images->n_images())
-    return surface_images->face_of_image(i) == face;
-  return surface_images->remaining_legs()[i - surface_images->n_images()].face_id != face;
+  if (source < lines.size())
+    return images->is_freed_of_line(source, face);
+  if (is_image(source))
+    return images->face_of_image(image_number(source)) == face;
+  const std::size_t ray = source - lines.size(), n_rays = line_system.rays().size();
+  return ray < n_rays ? images->is_freed_of_ray(ray, face) : images->remaining_legs()[ray - n_rays].face_id != face;
 }
 
-double DislocationTractions::distance(std::size_t i, const Vec3 &x) const
+double DislocationTractions::distance(const unsigned source, const Vec3 &x) const
 {
-  if (i < line_system.lines().size())
-    return std::sqrt(distance_point_segment(x, line_system.lines()[i].start, line_system.lines()[i].end).squared);
-  i -= line_system.lines().size();
-  const auto to_ray = [&](const VirtualRay &r)
-  { return std::sqrt(distance_point_ray(x, r.origin, r.direction).squared); };
-  if (i < line_system.rays().size())
-    return to_ray(line_system.rays()[i]);
-  i -= line_system.rays().size();
-  if (i < surface_images->n_images())
-    return surface_images->image_distance(i, x);
-  return to_ray(surface_images->remaining_legs()[i - surface_images->n_images()].ray);
-}
-
-SymTensor DislocationTractions::stress_of(std::size_t i, const Vec3 &x) const
-{
-  const IsotropicMedium &m = line_system.medium();
-  if (i < line_system.lines().size())
+  if (is_image(source))
+    return images->image_distance(image_number(source), x);
+  if (source >= lines.size())
   {
-    const StraightLine &l = line_system.lines()[i];
-    return segment_stress(m, x, l.start, l.end, l.burgers);
+    const VirtualRay &r = ray_list[source - lines.size()];
+    return std::sqrt(distance_point_ray(x, r.origin, r.direction).squared);
   }
-  i -= line_system.lines().size();
-  const auto of_ray = [&](const VirtualRay &r) { return ray_stress(m, x, r.origin, r.direction, r.burgers); };
-  if (i < line_system.rays().size())
-    return of_ray(line_system.rays()[i]);
-  i -= line_system.rays().size();
-  if (i < surface_images->n_images())
-    return surface_images->image_stress(i, x);
-  return of_ray(surface_images->remaining_legs()[i - surface_images->n_images()].ray);
+  const StraightLine &l = line_system.lines()[source];
+  return std::sqrt(distance_point_segment(x, l.start, l.end).squared);
 }
 
-double DislocationTractions::smooth_length(const dealii::Point<3> &centre, const double radius,
-                                           const dealii::types::boundary_id boundary) const
+void DislocationTractions::smooth_lengths(const dealii::Point<3> &centre, const double radius,
+                                          const std::span<const unsigned> sources,
+                                          const std::span<double> lengths) const
 {
-  double d = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < n_sources(); ++i)
-    if (!vanishes_on(i, boundary))
-      d = std::min(d, distance(i, to_vec3(centre)));
-  return std::hypot(std::max(0.0, d - radius), line_system.medium().a);
+  const Vec3 x = to_vec3(centre);
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    lengths[i] = std::hypot(std::max(0.0, distance(sources[i], x) - radius), line_system.medium().a);
 }
 
-void DislocationTractions::stress(const std::vector<dealii::Point<3>> &points,
-                                  const std::vector<dealii::types::boundary_id> &boundaries,
-                                  std::vector<dealii::SymmetricTensor<2, 3>> &values) const
+void DislocationTractions::add_stress(const std::span<const unsigned> sources,
+                                      const std::span<const dealii::Point<3>> points,
+                                      const std::span<dealii::SymmetricTensor<2, 3>> values) const
 {
-#pragma omp parallel for schedule(dynamic, 16)
-  for (std::size_t k = 0; k < points.size(); ++k)
+  // The last point is repeated up to whole vectors of the widest kind: the rest of a loop costs more than full vectors.
+  constexpr std::size_t width = 8;
+  const std::size_t n = (points.size() + width - 1) / width * width;
+  std::vector<double> numbers(9 * n, 0.0); // coordinates and stresses, component by component
+  for (std::size_t i = 0; i < n; ++i)
+    for (unsigned c = 0; c < 3; ++c)
+      numbers[c * n + i] = points[std::min(i, points.size() - 1)][c];
+  StressBatch batch{n, {}, {}};
+  for (std::size_t c = 0; c < 3; ++c)
+    batch.x[c] = &numbers[c * n];
+  for (std::size_t c = 0; c < 6; ++c)
+    batch.sigma[c] = &numbers[(3 + c) * n];
+  std::vector<std::size_t> image_sources;
+  for (const unsigned source : sources)
+    if (is_image(source))
+      image_sources.push_back(image_number(source));
+    else if (source < lines.size())
+      lines[source].add(batch);
+    else
+      rays[source - lines.size()].add(batch);
+  SymTensor sum;
+  for (std::size_t i = 0; i < points.size(); ++i)
   {
-    SymTensor sum = SymTensor::Zero();
-    for (std::size_t i = 0; i < n_sources(); ++i)
-      if (!vanishes_on(i, boundaries[k]))
-        sum += stress_of(i, to_vec3(points[k]));
-    values[k] = to_symmetric_tensor(sum);
+    for (Eigen::Index c = 0; c < 6; ++c)
+      sum[c] = batch.sigma[c][i];
+    if (!image_sources.empty())
+      sum += images->stress(image_sources, to_vec3(points[i]));
+    values[i] += to_symmetric_tensor(sum);
   }
 }
 } // namespace ddfem::coupling

@@ -151,19 +151,33 @@ bool SurfaceImages::is_freed(const std::vector<PlaneSet> &sets, const std::size_
   return false;
 }
 
-SymTensor SurfaceImages::stress(const Vec3 &x) const
+/// Sum over pieces number(0) ... number(n - 1); those of one plane are added up in its frame.
+template <typename PieceNumber>
+SymTensor SurfaceImages::sum_of_pieces(const std::size_t n, PieceNumber &&number, const Vec3 &x) const
 {
   SymTensor total = SymTensor::Zero();
-  for (std::size_t i = 0; i < pieces.size();)
+  for (std::size_t i = 0; i < n;)
   {
-    const std::size_t plane = pieces[i].plane;
+    const std::size_t plane = pieces[number(i)].plane;
     const Vec3 local = planes[plane].local(x);
     SymTensor sum = SymTensor::Zero();
-    for (; i < pieces.size() && pieces[i].plane == plane; ++i)
-      sum += std::visit([&](const auto &field) { return field.stress(local); }, pieces[i].field);
+    for (; i < n && pieces[number(i)].plane == plane; ++i)
+      sum += std::visit([&](const auto &field) { return field.stress(local); }, pieces[number(i)].field);
     total += planes[plane].to_sample(sum);
   }
   return total;
+}
+
+SymTensor SurfaceImages::stress(const Vec3 &x) const
+{
+  return sum_of_pieces(
+      pieces.size(), [](const std::size_t i) { return i; }, x);
+}
+
+SymTensor SurfaceImages::stress(const std::span<const std::size_t> images, const Vec3 &x) const
+{
+  return sum_of_pieces(
+      images.size(), [&](const std::size_t i) { return images[i]; }, x);
 }
 
 std::vector<SymTensor> SurfaceImages::stress(const std::span<const Vec3> points) const
@@ -188,13 +202,6 @@ std::vector<Vec3> SurfaceImages::displacement(const std::span<const Vec3> points
                    std::visit([&](const auto &field) { return field.displacement(x); }, piece.field);
     }
   return values;
-}
-
-SymTensor SurfaceImages::image_stress(const std::size_t image, const Vec3 &x) const
-{
-  const Piece &piece = pieces[image];
-  const Frame &frame = planes[piece.plane];
-  return frame.to_sample(std::visit([&](const auto &field) { return field.stress(frame.local(x)); }, piece.field));
 }
 
 double SurfaceImages::image_distance(const std::size_t image, const Vec3 &x) const
