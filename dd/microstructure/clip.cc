@@ -10,17 +10,17 @@ namespace
 {
 bool is_inside(const GrainShape &shape, const Vec3 &x)
 {
-  return shape.signed_distance(x) < -1e-9 * shape.diameter();
+  return shape.signed_distance(x) < 0;
 }
 
 /// Where between @p t0 and @p t1 of the segment from @p p along @p d the line passes through the surface.
 double passage(const GrainShape &shape, const Vec3 &p, const Vec3 &d, double t0, double t1)
 {
-  const bool first_inside = shape.signed_distance(p + t0 * d) <= 0;
+  const bool first_inside = is_inside(shape, p + t0 * d);
   for (int i = 0; i < 60; ++i)
   {
     const double middle = 0.5 * (t0 + t1);
-    ((shape.signed_distance(p + middle * d) <= 0) == first_inside ? t0 : t1) = middle;
+    (is_inside(shape, p + middle * d) == first_inside ? t0 : t1) = middle;
   }
   return first_inside ? t0 : t1; // on the inner side
 }

@@ -1,7 +1,7 @@
 #include "dd/topology/remesh.h"
 
 #include "dd/topology/line_operations.h"
-#include "dd/topology/motion.h"
+#include "dd/topology/surface_lines.h"
 
 #include <algorithm>
 #include <array>
@@ -203,7 +203,9 @@ void remesh(TopologyContext &context)
     release_short_surface_lines(context);
   refine(context);
   coarsen(context);
-  if (context.shape) // lines that have lost their last interior node
-    release_short_surface_lines(context);
+  if (!context.shape)
+    return;
+  settle_at_surface(context);
+  release_short_surface_lines(context); // lines that have lost their last interior node
 }
 } // namespace ddfem

@@ -178,6 +178,8 @@ struct SurfaceLoops : TopologyFixture
     if (form == 0)
     {
       PolygonLoop loop{{1, 1, 0}, system.burgers, centre, radius, 0};
+      if (std::abs(systems->orientation().plane_normal(loop.plane).dot(loop.burgers)) < 0.01)
+        loop.plane = {1, -1, 0};
       add_polygon_loop(network, *systems, loop, settings.max_segment);
       return;
     }
