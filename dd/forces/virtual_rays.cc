@@ -70,9 +70,14 @@ Vec3 ray_direction(const GrainShape &shape, const RayDirection rule, const Vec3 
   const Vec3 wanted = rule == RayDirection::normal
                           ? normal
                           : Vec3((x - 0.5 * (shape.lower_corner() + shape.upper_corner())).normalized());
-  if (shape.is_convex() || ray_is_free(shape, x, wanted, preferred_clearance))
+  if (shape.is_convex())
     return wanted;
-  if (const auto direction = nearest_free_direction(shape, x, normal))
+  // Within a step surface nodes move along chords, which may pass below the surface.
+  const double depth = -shape.signed_distance(x);
+  const Vec3 start = depth > 0 ? Vec3(x + depth * normal) : x;
+  if (ray_is_free(shape, start, wanted, preferred_clearance))
+    return wanted;
+  if (const auto direction = nearest_free_direction(shape, start, normal))
     return *direction;
   std::ostringstream message;
   message << "no straight way leads out of the grain from the surface point (" << x.transpose()

@@ -84,7 +84,9 @@ bool improve(TopologyContext &context, const Corner &corner)
   const Network &network = context.network;
   const TopologySettings &settings = context.settings;
   const bool too_short = corner.shorter() < settings.min_segment;
-  if ((too_short && corner.joined() <= longest_after_short(settings)) || is_flat(network, corner, settings))
+  // An arm of no length has no direction either; nothing moves when it goes.
+  const bool vanished = corner.shorter() < 1e-3 * settings.min_segment;
+  if (vanished || (too_short && corner.joined() <= longest_after_short(settings)) || is_flat(network, corner, settings))
   {
     remove_node(context, corner.node);
     ++context.counts.coarsenings;

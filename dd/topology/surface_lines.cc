@@ -121,8 +121,11 @@ bool cut_out(TopologyContext &context, const SegmentIndex s, const Vec3 &outside
 /// Lets a line bend around the part of an impenetrable face that it has passed through.
 void bend_around(TopologyContext &context, const SegmentIndex s, const Vec3 &outside)
 {
-  const Vec3 normal = context.network.normal(s);
-  if (const auto x = project_to_surface(*context.shape, outside, normal))
+  const Network &network = context.network;
+  const auto x = project_to_surface(*context.shape, outside, network.normal(s));
+  const double shortest = 0.25 * context.settings.collision_radius;
+  if (x && (*x - network.position(network.start(s))).norm() > shortest &&
+      (*x - network.position(network.end(s))).norm() > shortest)
     move_node(context, split_segment(context, s, outside, Vec3::Zero()), *x);
 }
 

@@ -33,7 +33,7 @@ int main(int argc, char **argv)
       sum.collisions += r.counts.collisions;
     }
     if (!r.failure.empty() && ++failed <= 40)
-      std::printf("%s\n", r.failure.c_str());
+      std::printf("%s\n", r.failure.substr(0, 400).c_str());
     std::fflush(stdout);
   }
   for (const auto &[name, sum] : sums)
