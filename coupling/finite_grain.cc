@@ -2,6 +2,7 @@
 
 #include "coupling/convert.h"
 #include "coupling/dislocation_tractions.h"
+#include "coupling/grain_geometry.h"
 #include "coupling/image_planes.h"
 #include "coupling/input_error.h"
 #include "dd/common/parallel.h"
@@ -29,20 +30,6 @@ dealii::types::boundary_id find_face(const FaceNames &names, const std::string &
   {
     throw InputError("Boundary conditions/" + entry + " = " + name + ": " + e.what());
   }
-}
-
-std::vector<PolyhedronShape::Facet> facets_of(const fem::Triangulation &mesh)
-{
-  std::vector<PolyhedronShape::Facet> facets;
-  for (const fem::BoundaryFacet &f : fem::boundary_facets(mesh))
-  {
-    PolyhedronShape::Facet facet;
-    for (const auto &v : f.vertices)
-      facet.vertices.push_back(to_vec3(v));
-    facet.face_id = static_cast<int>(f.boundary);
-    facets.push_back(facet);
-  }
-  return facets;
 }
 
 /// The plane that a face lies in, if it is perpendicular to a coordinate axis.
@@ -128,14 +115,7 @@ std::uint64_t FiniteGrain::n_dofs() const
 
 void FiniteGrain::build_shape(const GrainParameters &p)
 {
-  const Vec3 origin(p.mesh.origin[0], p.mesh.origin[1], p.mesh.origin[2]);
-  const Vec3 size(p.mesh.size[0], p.mesh.size[1], p.mesh.size[2]);
-  if (p.mesh.shape == fem::MeshParameters::Shape::box)
-    grain_shape = std::make_unique<BoxShape>(origin, origin + size);
-  else if (p.mesh.shape == fem::MeshParameters::Shape::cylinder)
-    grain_shape = std::make_unique<CylinderShape>(origin, p.mesh.radius, p.mesh.height);
-  else
-    grain_shape = std::make_unique<PolyhedronShape>(facets_of(*mesh));
+  grain_shape = make_grain_shape(p.mesh, *mesh);
   for (const std::string &name : p.impenetrable_faces)
     grain_shape->set_face_kind(static_cast<int>(find_face(face_names, name, "Impenetrable faces")),
                                FaceKind::impenetrable);
@@ -143,20 +123,18 @@ void FiniteGrain::build_shape(const GrainParameters &p)
 
 void FiniteGrain::find_platens(const GrainParameters &p)
 {
-  const bool cylinder = p.mesh.shape == fem::MeshParameters::Shape::cylinder;
-  const bool box = p.mesh.shape == fem::MeshParameters::Shape::box;
-  const auto name_or =
-      [&](const std::string &given, const char *for_box, const char *for_cylinder, const std::string &entry)
+  const auto [usual_fixed, usual_platen] = usual_held_faces(p.mesh.shape);
+  const auto name_or = [](const std::string &given, const std::string &usual, const std::string &entry)
   {
-    if (given.empty() && !box && !cylinder)
+    if (given.empty() && usual.empty())
       throw InputError("Boundary conditions/" + entry + " = (empty): a mesh needs the name of a physical surface");
-    return given.empty() ? std::string(cylinder ? for_cylinder : for_box) : given;
+    return given.empty() ? usual : given;
   };
-  const std::string fixed = name_or(p.fixed_face, "z-", "bottom", "Fixed face");
-  const std::string platen = name_or(p.platen_face, "z+", "top", "Platen face");
+  const std::string fixed = name_or(p.fixed_face, usual_fixed, "Fixed face");
+  const std::string platen = name_or(p.platen_face, usual_platen, "Platen face");
   fixed_face = find_face(face_names, fixed, "Fixed face");
   platen_face = find_face(face_names, platen, "Platen face");
-  const auto facets = facets_of(*mesh);
+  const auto facets = boundary_polygons(*mesh);
   const AxisPlane low = plane_of_face(facets, static_cast<int>(fixed_face), fixed);
   const AxisPlane high = plane_of_face(facets, static_cast<int>(platen_face), platen);
   if (low.axis != high.axis || low.sign == high.sign)
@@ -168,7 +146,7 @@ void FiniteGrain::find_platens(const GrainParameters &p)
 
 void FiniteGrain::find_image_planes()
 {
-  const auto facets = facets_of(*mesh);
+  const auto facets = boundary_polygons(*mesh);
   planes_of_images = image_planes(facets, {static_cast<int>(fixed_face), static_cast<int>(platen_face)});
   image_settings.depth = parameters.image_depth * facet_size(facets, planes_of_images);
 }

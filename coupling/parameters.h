@@ -92,7 +92,8 @@ struct Parameters
   LoadingParameters loading;
   std::vector<FrankReadSource> sources;
   std::vector<PolygonLoop> loops;
-  std::string network_file; ///< absolute; empty: none
+  std::string network_file;    ///< absolute; empty: none
+  bool cut_at_surface = false; ///< what the initial lines reach out of the grain
   TopologySettings topology;
   double core_cutoff_radius = 0; ///< nm
   double pair_tolerance = 0;

@@ -1,6 +1,7 @@
 #include "coupling/simulation.h"
 
 #include "coupling/input_error.h"
+#include "dd/microstructure/clip.h"
 #include "dd/mobility/linear_glide.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/growth.h"
@@ -52,6 +53,8 @@ Simulation::Simulation(const Parameters &p, MPI_Comm comm)
   if (p.mode == Mode::finite)
   {
     finite_grain = std::make_unique<FiniteGrain>(p.grain, p.medium, communicator);
+    if (p.cut_at_surface)
+      clip_to_grain(dislocations, finite_grain->shape(), 0.1 * p.topology.min_segment);
     fit_into_grain(dislocations, finite_grain->shape(), p.topology.min_segment);
     initial_open_lines = open_lines(dislocations, &finite_grain->shape(), p.grain.ray_direction);
     if (p.grain.reference == ReferenceState::perfect_crystal)
