@@ -5,6 +5,7 @@
 #include "coupling/input_error.h"
 #include "dd/elasticity/triangle_displacement.h"
 #include "dd/topology/growth.h"
+#include "fem/face_section.h"
 
 #include <algorithm>
 #include <cmath>
@@ -98,17 +99,40 @@ FiniteGrain::FiniteGrain(const GrainParameters &grain_parameters, const Isotropi
   }
   find_platens(parameters);
   const bool clamped = parameters.clamped;
-  const std::array<bool, 3> components{clamped || axis == 0, clamped || axis == 1, clamped || axis == 2};
   problem = std::make_unique<fem::ElasticProblem>(
       *mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu},
-      std::vector<fem::DisplacementCondition>{{fixed_face, components}, {platen_face, components}});
-  platen_area = problem->boundary_area(platen_face);
+      std::vector<fem::DisplacementCondition>{{fixed_face, platen_motion->held_by_fixed_face(clamped)},
+                                              {platen_face, platen_motion->held_by_platen(clamped)}});
   reference_correction.resize(problem->boundary_points().size());
   infinite_displacement.resize(problem->boundary_points().size());
+  set_unit_response();
+}
 
-  const double probe = 1e-3 * gauge_length;
-  problem->solve(prescribed(probe));
-  modulus = platen_sign * problem->reaction(platen_face)[static_cast<unsigned>(axis)] / platen_area / 1e-3;
+void FiniteGrain::set_unit_response()
+{
+  pattern.assign(problem->boundary_points().size(), {});
+  for (std::size_t i = 0; i < pattern.size(); ++i)
+  {
+    const auto &ids = problem->boundary_ids()[i];
+    if (std::find(ids.begin(), ids.end(), platen_face) != ids.end())
+      pattern[i] = to_tensor(platen_motion->displacement(to_vec3(problem->boundary_points()[i])));
+  }
+  problem->solve(pattern);
+  unit_response = problem->solution();
+  load_per_motion = platen_load();
+  modulus = load_per_motion * platen_motion->stress_per_load() / platen_motion->strain_per_motion();
+  problem->set_start_vectors({}); // of no use for the field of the dislocations
+}
+
+/// Load that does work on the motion of the platen: the reactions are zero on what is not held.
+double FiniteGrain::platen_load() const
+{
+  const auto reactions = problem->boundary_reactions();
+  double load = 0;
+  for (std::size_t i = 0; i < pattern.size(); ++i)
+    load += reactions[i] * pattern[i];
+  MPI_Allreduce(MPI_IN_PLACE, &load, 1, MPI_DOUBLE, MPI_SUM, communicator);
+  return load;
 }
 
 FiniteGrain::~FiniteGrain() = default;
@@ -161,18 +185,42 @@ void FiniteGrain::find_platens(const GrainParameters &p)
   axis = high.axis;
   platen_sign = high.sign;
   gauge_length = std::abs(high.position - low.position);
+  describe_platen(facets);
 }
 
-std::vector<dealii::Tensor<1, 3>> FiniteGrain::prescribed(const double u) const
+void FiniteGrain::describe_platen(const std::vector<PolyhedronShape::Facet> &facets)
 {
-  std::vector<dealii::Tensor<1, 3>> values(problem->boundary_points().size());
-  for (std::size_t i = 0; i < values.size(); ++i)
+  const unsigned degree = parameters.elasticity.degree;
+  const fem::FaceSection section = fem::face_section(*mesh, platen_face, degree);
+  platen_area = section.area;
+  fixed_centre = to_vec3(fem::face_section(*mesh, fixed_face, degree).centre);
+  double reach = 0;
+  for (const auto &f : facets)
+    for (const Vec3 &v : f.vertices)
+      if (f.face_id == static_cast<int>(platen_face))
+      {
+        const Vec3 arm = v - to_vec3(section.centre);
+        reach =
+            std::max(reach, parameters.platen_motion == PlatenMotion::bending ? std::abs(arm[parameters.across_axis])
+                                                                              : arm.norm());
+      }
+  try
   {
-    values[i] = reference_correction[i] - infinite_displacement[i];
-    const auto &ids = problem->boundary_ids()[i];
-    if (std::find(ids.begin(), ids.end(), platen_face) != ids.end())
-      values[i][static_cast<unsigned>(axis)] += platen_sign * u;
+    platen_motion = std::make_unique<Platen>(parameters.platen_motion, axis, platen_sign, parameters.across_axis,
+                                             section, gauge_length, reach);
   }
+  catch (const std::invalid_argument &e)
+  {
+    throw InputError("Boundary conditions/Transverse axis = " + std::string(1, "xyz"[parameters.across_axis]) + ": " +
+                     e.what());
+  }
+}
+
+std::vector<dealii::Tensor<1, 3>> FiniteGrain::prescribed_at_rest() const
+{
+  std::vector<dealii::Tensor<1, 3>> values = reference_correction;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] -= infinite_displacement[i];
   return values;
 }
 
@@ -209,18 +257,46 @@ void FiniteGrain::add_swept(const SweptArea &area)
   }
 }
 
-GrainSolution FiniteGrain::solve(const LineSystem &lines, const double u)
+GrainSolution FiniteGrain::solve_at_rest(const LineSystem &lines)
 {
   GrainSolution solution;
   solution.tractions = problem->set_tractions(DislocationTractions(lines));
   const double diameter = grain_shape->diameter();
   std::tie(solution.force_imbalance, solution.moment_imbalance) =
       imbalance(solution.tractions, medium.mu * medium.a * diameter, diameter);
-  solution.solve = problem->solve(prescribed(u));
-  const auto component = static_cast<unsigned>(axis);
-  solution.fixed_reaction = -platen_sign * problem->reaction(fixed_face)[component];
-  solution.platen_reaction = platen_sign * problem->reaction(platen_face)[component];
+  solution.solve = problem->solve(prescribed_at_rest());
+  at_rest = problem->solution();
+  solution.load_at_rest = platen_load();
   return solution;
+}
+
+void FiniteGrain::move_platen(GrainSolution &solution, const double q)
+{
+  std::vector<double> values = at_rest;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] += q * unit_response[i];
+  problem->set_solution(values);
+  solution.motion = q;
+  solution.load = solution.load_at_rest + q * load_per_motion;
+  solution.platen_force = to_vec3(problem->reaction(platen_face));
+  solution.fixed_force = to_vec3(problem->reaction(fixed_face));
+  solution.platen_moment = to_vec3(problem->reaction_moment(platen_face, to_point(platen_motion->centre())));
+  solution.fixed_moment = to_vec3(problem->reaction_moment(fixed_face, to_point(fixed_centre)));
+  solution.platen_reaction = platen_sign * solution.platen_force[axis];
+  solution.fixed_reaction = -platen_sign * solution.fixed_force[axis];
+}
+
+GrainSolution FiniteGrain::solve(const LineSystem &lines, const double q)
+{
+  GrainSolution solution = solve_at_rest(lines);
+  move_platen(solution, q);
+  return solution;
+}
+
+BoundaryState FiniteGrain::boundary_state() const
+{
+  return {problem->boundary_loads(), problem->boundary_reactions(), problem->boundary_displacements(),
+          infinite_displacement};
 }
 
 std::vector<SymTensor> FiniteGrain::correction_stress(const std::vector<Vec3> &points) const
