@@ -76,6 +76,34 @@ double work_of_nodal_forces(const Network &network, const std::vector<Vec3> &fir
   return work;
 }
 
+std::vector<Vec3> swept_centres(const SweptArea &area, const GrainShape *shape)
+{
+  std::vector<Vec3> centres;
+  for (const SweptTriangle &t : area.triangles())
+    if (t.inside)
+    {
+      Vec3 x = (t.vertices[0].value + t.vertices[1].value + t.vertices[2].value) / 3;
+      if (const double outside = shape ? shape->signed_distance(x) : 0.0; outside > 0)
+        x -= outside * shape->outward_normal(x);
+      centres.push_back(x);
+    }
+  return centres;
+}
+
+double work_on_area(const SweptArea &area, const std::vector<SymTensor> &stress)
+{
+  double work = 0;
+  std::size_t k = 0;
+  for (const SweptTriangle &t : area.triangles())
+    if (t.inside)
+    {
+      const Vec3 &origin = t.vertices[0].value;
+      const Vec3 a = 0.5 * (t.vertices[1].value - origin).cross(t.vertices[2].value - origin);
+      work -= t.burgers.dot(contract(stress[k++], a));
+    }
+  return work;
+}
+
 void EnergyBalance::start(const SymTensor &stress, const SymTensor &plastic_strain)
 {
   last_stress = stress;
@@ -86,7 +114,8 @@ void EnergyBalance::add(const double work, const double stored, const LineWork &
 {
   sums.work += work;
   sums.stored += stored + lines.external - lines.total;
-  sums.dissipated += lines.total;
+  sums.dissipated += lines.total + lines.topology;
+  sums.topology += lines.topology;
   scale = std::max({scale, std::abs(sums.work), std::abs(sums.dissipated)});
 }
 

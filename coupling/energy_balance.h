@@ -16,11 +16,19 @@ double work_on_lines(const Network &network, const SegmentPointStress &stress, c
 double work_of_nodal_forces(const Network &network, const std::vector<Vec3> &first, const std::vector<Vec3> &last,
                             const std::vector<Vec3> &displacement);
 
+/// Centres (nm) of the triangles swept inside the grain; those beyond a surface are put back onto it.
+std::vector<Vec3> swept_centres(const SweptArea &area, const GrainShape *shape);
+
+/// Work (MPa nm^3) of a stress known at the swept_centres() on the area swept inside the grain: sum of -b . sigma . A.
+double work_on_area(const SweptArea &area, const std::vector<SymTensor> &stress);
+
 /// What the lines did in one step, MPa nm^3.
 struct LineWork
 {
-  double total = 0;    ///< of all nodal forces: what drag dissipates
-  double external = 0; ///< of the correction field (finite grain) or of the applied stress
+  double total = 0;    ///< of all nodal forces along the motion of the nodes: what drag dissipates
+  double external = 0; ///< the part in it of the correction field (finite grain) or of the applied stress
+  /// Of the correction (or applied stress) on what was swept besides: merging, splitting, remeshing, lines that leave.
+  double topology = 0;
 };
 
 /// Sums from the start of the run, MPa nm^3.
@@ -28,7 +36,8 @@ struct Energies
 {
   double work = 0;       ///< done by the platens, or by the applied stress on the strain of the body
   double stored = 0;     ///< elastic energy of the body
-  double dissipated = 0; ///< work of the forces on the nodes
+  double dissipated = 0; ///< by drag and by changes of topology
+  double topology = 0;   ///< the latter
   double mismatch() const { return work - stored - dissipated; }
 };
 
@@ -38,7 +47,7 @@ struct Energies
 ///   E = 1/2 (r - f) . u^  - sum of f . du~  - sum of (work of the nodal forces of the infinite field),
 /// the energy of the correction and of its interaction with the infinite field, the change of the infinite field's energy that
 /// crosses the surface, and the energy of the lines in an unbounded body. As K u^ = f + r is symmetric,
-///   work - stored - dissipated = [ (f+r) . du~ + df . u^ ] - (work of the correction field on the lines):
+///   work - stored - dissipated = [ (f+r) . du~ + df . u^ ] - (work of the correction field on lines and swept area):
 /// by reciprocity the bracket is the work of sigma^ on the swept area. The balance closes if tractions, displacements by swept area,
 /// solver, reactions, recovered stress and nodal forces belong together. It does not test the forces of the infinite field
 /// against the energies of lines: that is a test of dd/.

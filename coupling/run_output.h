@@ -34,6 +34,7 @@ struct HistoryRow
   Vec3 platen_force = Vec3::Zero(), platen_moment = Vec3::Zero(); ///< MPa nm^2, MPa nm^3; sample frame, on the grain
   Vec3 fixed_force = Vec3::Zero(), fixed_moment = Vec3::Zero();
   double work = 0, stored_energy = 0, dissipated_energy = 0; ///< since the start, MPa nm^3
+  double dissipated_by_topology = 0;                         ///< part of dissipated_energy
   double energy_mismatch = 0;                                ///< over the largest of work and dissipation
 };
 

@@ -194,9 +194,10 @@ void Simulation::change_topology(TopologyContext &context)
     dislocations.clean();
 }
 
-void Simulation::book()
+void Simulation::book(LineWork &work)
 {
   const Timing::Scope scope(timing, "swept area");
+  work.topology = work_on_swept_area() - work.external;
   total_plastic_strain += plastic_strain_volume(swept) / reference_volume();
   if (finite_grain)
     finite_grain->add_swept(swept);
@@ -243,10 +244,10 @@ RunEnd Simulation::run(RunOutput &output)
   while (!must_stop(step))
   {
     step = move_lines();
-    const LineWork work = work_of_step(step);
+    LineWork work = work_of_step(step);
     TopologyContext context = topology_context(step.displacement);
     change_topology(context);
-    book();
+    book(work);
     time += step.dt;
     ++step_number;
     check_consistency();

@@ -74,9 +74,10 @@ private:
   void apply_load(const LineWork &lines);
   BodyResponse body_response() const;
   LineWork work_of_step(const IntegratorStep &step) const;
+  double work_on_swept_area() const;
   IntegratorStep move_lines();
   void change_topology(TopologyContext &context);
-  void book();
+  void book(LineWork &work);
   double axial_plastic_strain() const;
   double reference_volume() const;
   double time_left() const;

@@ -91,4 +91,11 @@ LineWork Simulation::work_of_step(const IntegratorStep &step) const
                       step.displacement);
   return work;
 }
+/// Of the correction or applied stress that the lines have moved in, on all that was swept.
+double Simulation::work_on_swept_area() const
+{
+  const std::vector<Vec3> centres = swept_centres(swept, finite_grain ? &finite_grain->shape() : nullptr);
+  return work_on_area(swept, finite_grain ? finite_grain->correction_stress(centres)
+                                          : std::vector<SymTensor>(centres.size(), applied_stress()));
+}
 } // namespace ddfem::coupling

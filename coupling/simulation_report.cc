@@ -63,6 +63,7 @@ HistoryRow Simulation::history_row(const IntegratorStep &step) const
   r.work = energy.energies().work;
   r.stored_energy = energy.energies().stored;
   r.dissipated_energy = energy.energies().dissipated;
+  r.dissipated_by_topology = energy.energies().topology;
   r.energy_mismatch = energy.relative_mismatch();
   return r;
 }
