@@ -8,10 +8,12 @@
 #include "dd/common/parallel.h"
 #include "dd/elasticity/triangle_displacement.h"
 #include "dd/topology/growth.h"
+#include "fem/face_section.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <tuple>
 
 namespace ddfem::coupling
@@ -88,17 +90,41 @@ FiniteGrain::FiniteGrain(const GrainParameters &grain_parameters, const Isotropi
   find_platens(parameters);
   find_image_planes();
   const bool clamped = parameters.clamped;
-  const std::array<bool, 3> components{clamped || axis == 0, clamped || axis == 1, clamped || axis == 2};
   problem = std::make_unique<fem::ElasticProblem>(
       *mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu},
-      std::vector<fem::DisplacementCondition>{{fixed_face, components}, {platen_face, components}});
-  platen_area = problem->boundary_area(platen_face);
+      std::vector<fem::DisplacementCondition>{{fixed_face, platen_motion->held_by_fixed_face(clamped)},
+                                              {platen_face, platen_motion->held_by_platen(clamped)}});
   reference_correction.resize(problem->boundary_points().size());
   infinite_displacement.resize(problem->boundary_points().size());
+  image_displacement.resize(problem->boundary_points().size());
+  set_unit_response();
+}
 
-  const double probe = 1e-3 * gauge_length;
-  problem->solve(prescribed(probe));
-  modulus = platen_sign * problem->reaction(platen_face)[static_cast<unsigned>(axis)] / platen_area / 1e-3;
+void FiniteGrain::set_unit_response()
+{
+  pattern.assign(problem->boundary_points().size(), {});
+  for (std::size_t i = 0; i < pattern.size(); ++i)
+  {
+    const auto &ids = problem->boundary_ids()[i];
+    if (std::find(ids.begin(), ids.end(), platen_face) != ids.end())
+      pattern[i] = to_tensor(platen_motion->displacement(to_vec3(problem->boundary_points()[i])));
+  }
+  problem->solve(pattern);
+  unit_response = problem->solution();
+  load_per_motion = platen_load();
+  modulus = load_per_motion * platen_motion->stress_per_load() / platen_motion->strain_per_motion();
+  problem->set_start_vectors({}); // of no use for the field of the dislocations
+}
+
+/// Load that does work on the motion of the platen: the reactions are zero on what is not held.
+double FiniteGrain::platen_load() const
+{
+  const auto reactions = problem->boundary_reactions();
+  double load = 0;
+  for (std::size_t i = 0; i < pattern.size(); ++i)
+    load += reactions[i] * pattern[i];
+  MPI_Allreduce(MPI_IN_PLACE, &load, 1, MPI_DOUBLE, MPI_SUM, communicator);
+  return load;
 }
 
 FiniteGrain::~FiniteGrain() = default;
@@ -142,49 +168,63 @@ void FiniteGrain::find_platens(const GrainParameters &p)
   axis = high.axis;
   platen_sign = high.sign;
   gauge_length = std::abs(high.position - low.position);
+  describe_platen(facets);
 }
 
 void FiniteGrain::find_image_planes()
 {
   const auto facets = boundary_polygons(*mesh);
-  planes_of_images = image_planes(facets, {static_cast<int>(fixed_face), static_cast<int>(platen_face)});
+  const auto is_held = [](const std::array<bool, 3> &components)
+  { return components[0] || components[1] || components[2]; };
+  std::set<int> held;
+  if (is_held(platen_motion->held_by_fixed_face(parameters.clamped)))
+    held.insert(static_cast<int>(fixed_face));
+  if (is_held(platen_motion->held_by_platen(parameters.clamped)))
+    held.insert(static_cast<int>(platen_face));
+  planes_of_images = image_planes(facets, held);
   image_settings.depth = parameters.image_depth * facet_size(facets, planes_of_images);
 }
 
 void FiniteGrain::update_images(const LineSystem &lines)
 {
   images = SurfaceImages(lines, planes_of_images, image_settings);
+  const std::vector<Vec3> u = images.displacement(boundary_nodes());
+  std::transform(u.begin(), u.end(), image_displacement.begin(), to_tensor);
 }
 
-std::vector<dealii::Tensor<1, 3>> FiniteGrain::image_displacement() const
+void FiniteGrain::describe_platen(const std::vector<PolyhedronShape::Facet> &facets)
 {
-  std::vector<dealii::Tensor<1, 3>> u;
-  for (const Vec3 &v : images.displacement(boundary_nodes()))
-    u.push_back(to_tensor(v));
-  return u;
-}
-
-std::vector<dealii::Tensor<1, 3>> FiniteGrain::prescribed(const double u) const
-{
-  // Elsewhere the values are not read: the images are only evaluated where they are.
-  std::vector<Vec3> nodes;
-  std::vector<std::size_t> index;
-  std::vector<dealii::Tensor<1, 3>> values(problem->boundary_points().size());
-  for (std::size_t i = 0; i < values.size(); ++i)
+  const unsigned degree = parameters.elasticity.degree;
+  const fem::FaceSection section = fem::face_section(*mesh, platen_face, degree);
+  platen_area = section.area;
+  fixed_centre = to_vec3(fem::face_section(*mesh, fixed_face, degree).centre);
+  double reach = 0;
+  for (const auto &f : facets)
+    for (const Vec3 &v : f.vertices)
+      if (f.face_id == static_cast<int>(platen_face))
+      {
+        const Vec3 arm = v - to_vec3(section.centre);
+        reach =
+            std::max(reach, parameters.platen_motion == PlatenMotion::bending ? std::abs(arm[parameters.across_axis])
+                                                                              : arm.norm());
+      }
+  try
   {
-    const auto &components = problem->prescribed_components()[i];
-    if (!components[0] && !components[1] && !components[2])
-      continue;
-    nodes.push_back(to_vec3(problem->boundary_points()[i]));
-    index.push_back(i);
-    values[i] = reference_correction[i] - infinite_displacement[i];
-    const auto &ids = problem->boundary_ids()[i];
-    if (std::find(ids.begin(), ids.end(), platen_face) != ids.end())
-      values[i][static_cast<unsigned>(axis)] += platen_sign * u;
+    platen_motion = std::make_unique<Platen>(parameters.platen_motion, axis, platen_sign, parameters.across_axis,
+                                             section, gauge_length, reach);
   }
-  const std::vector<Vec3> of_images = images.displacement(nodes);
-  for (std::size_t k = 0; k < index.size(); ++k)
-    values[index[k]] -= to_tensor(of_images[k]);
+  catch (const std::invalid_argument &e)
+  {
+    throw InputError("Boundary conditions/Transverse axis = " + std::string(1, "xyz"[parameters.across_axis]) + ": " +
+                     e.what());
+  }
+}
+
+std::vector<dealii::Tensor<1, 3>> FiniteGrain::prescribed_at_rest() const
+{
+  std::vector<dealii::Tensor<1, 3>> values = reference_correction;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] -= infinite_displacement[i] + image_displacement[i];
   return values;
 }
 
@@ -205,9 +245,8 @@ void FiniteGrain::relax(const LineSystem &lines)
   free_grain.set_tractions(DislocationTractions(lines, &images));
   free_grain.solve(std::vector<dealii::Tensor<1, 3>>(free_grain.boundary_points().size()));
   reference_correction = free_grain.boundary_displacements();
-  const auto of_images = image_displacement();
-  for (std::size_t i = 0; i < of_images.size(); ++i)
-    reference_correction[i] += of_images[i];
+  for (std::size_t i = 0; i < reference_correction.size(); ++i)
+    reference_correction[i] += image_displacement[i];
 }
 
 void FiniteGrain::add_swept(const SweptArea &area)
@@ -225,7 +264,7 @@ void FiniteGrain::add_swept(const SweptArea &area)
   }
 }
 
-GrainSolution FiniteGrain::solve(const LineSystem &lines, const double u)
+GrainSolution FiniteGrain::solve_at_rest(const LineSystem &lines)
 {
   GrainSolution solution;
   update_images(lines);
@@ -233,33 +272,73 @@ GrainSolution FiniteGrain::solve(const LineSystem &lines, const double u)
   const double diameter = grain_shape->diameter();
   std::tie(solution.force_imbalance, solution.moment_imbalance) =
       imbalance(solution.tractions, medium.mu * medium.a * diameter, diameter);
-  solution.solve = problem->solve(prescribed(u));
-  const auto component = static_cast<unsigned>(axis);
-  solution.fixed_reaction = -platen_sign * problem->reaction(fixed_face)[component];
-  solution.platen_reaction = platen_sign * problem->reaction(platen_face)[component];
+  solution.solve = problem->solve(prescribed_at_rest());
+  at_rest = problem->solution();
+  solution.load_at_rest = platen_load();
   return solution;
 }
 
-std::vector<SymTensor> FiniteGrain::correction_stress(const std::vector<Vec3> &points) const
+void FiniteGrain::move_platen(GrainSolution &solution, const double q)
+{
+  std::vector<double> values = at_rest;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] += q * unit_response[i];
+  problem->set_solution(values);
+  solution.motion = q;
+  solution.load = solution.load_at_rest + q * load_per_motion;
+  solution.platen_force = to_vec3(problem->reaction(platen_face));
+  solution.fixed_force = to_vec3(problem->reaction(fixed_face));
+  solution.platen_moment = to_vec3(problem->reaction_moment(platen_face, to_point(platen_motion->centre())));
+  solution.fixed_moment = to_vec3(problem->reaction_moment(fixed_face, to_point(fixed_centre)));
+  solution.platen_reaction = platen_sign * solution.platen_force[axis];
+  solution.fixed_reaction = -platen_sign * solution.fixed_force[axis];
+}
+
+GrainSolution FiniteGrain::solve(const LineSystem &lines, const double q)
+{
+  GrainSolution solution = solve_at_rest(lines);
+  move_platen(solution, q);
+  return solution;
+}
+
+BoundaryState FiniteGrain::boundary_state() const
+{
+  std::vector<dealii::Tensor<1, 3>> analytic = infinite_displacement;
+  for (std::size_t i = 0; i < analytic.size(); ++i)
+    analytic[i] += image_displacement[i];
+  return {problem->boundary_loads(), problem->boundary_reactions(), problem->boundary_displacements(), analytic};
+}
+
+std::vector<SymTensor> FiniteGrain::stress_of_elements(const std::vector<Vec3> &points) const
 {
   std::vector<dealii::Point<3>> positions;
   positions.reserve(points.size());
-  for (const Vec3 &x : points)
-    positions.push_back(to_point(x));
+  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_point);
   std::vector<SymTensor> result;
   result.reserve(points.size());
   for (const auto &s : problem->stress_at(positions))
     result.push_back(to_sym_tensor(s));
+  return result;
+}
+
+void FiniteGrain::add_images(const std::vector<Vec3> &points, std::vector<SymTensor> &stress) const
+{
   if (images.empty())
-    return result;
+    return;
   std::vector<SymTensor> of_images(points.size());
   const IndexRange owned = owned_range(points.size(), communicator);
   const auto mine = images.stress(std::span(points).subspan(owned.begin, owned.end - owned.begin));
   std::copy(mine.begin(), mine.end(), of_images.begin() + static_cast<std::ptrdiff_t>(owned.begin));
   gather_owned(of_images, communicator);
   for (std::size_t k = 0; k < points.size(); ++k)
-    result[k] += of_images[k];
-  return result;
+    stress[k] += of_images[k];
+}
+
+std::vector<SymTensor> FiniteGrain::correction_stress(const std::vector<Vec3> &points) const
+{
+  std::vector<SymTensor> stress = stress_of_elements(points);
+  add_images(points, stress);
+  return stress;
 }
 
 SegmentField FiniteGrain::correction_at_segments(const Network &network) const
@@ -273,8 +352,10 @@ SegmentField FiniteGrain::correction_at_segments(const Network &network) const
         depth = std::min(depth, (p.point - x).dot(p.outward));
       return std::max(depth, 0.0) + medium.a;
     };
-  SegmentField field{SegmentPoints(network, smooth_length), {}};
-  field.stress = correction_stress(field.points.positions());
+  SegmentField field{SegmentPoints(network, smooth_length), {}, {}};
+  field.without_images = stress_of_elements(field.points.positions());
+  field.stress = field.without_images;
+  add_images(field.points.positions(), field.stress);
   return field;
 }
 
@@ -289,16 +370,16 @@ std::vector<Vec3> FiniteGrain::boundary_nodes() const
 std::vector<Vec3> FiniteGrain::boundary_displacement() const
 {
   std::vector<Vec3> u;
-  const auto correction = problem->boundary_displacements(), of_images = image_displacement();
+  const auto correction = problem->boundary_displacements();
   for (std::size_t i = 0; i < correction.size(); ++i)
-    u.push_back(to_vec3(correction[i] + of_images[i] + infinite_displacement[i]));
+    u.push_back(to_vec3(correction[i] + image_displacement[i] + infinite_displacement[i]));
   return u;
 }
 
 std::string FiniteGrain::write(const std::string &directory, const std::string &name) const
 {
   // Displacements are counted from the reference state, like the prescribed ones.
-  std::vector<dealii::Tensor<1, 3>> extra = image_displacement();
+  std::vector<dealii::Tensor<1, 3>> extra = image_displacement;
   for (std::size_t i = 0; i < extra.size(); ++i)
     extra[i] += infinite_displacement[i] - reference_correction[i];
   return problem->write_surface(directory, name, extra);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupling/parameters.h"
+#include "coupling/platen.h"
 #include "dd/forces/line_system.h"
 #include "dd/forces/segment_points.h"
 #include "dd/forces/surface_images.h"
@@ -19,15 +20,28 @@
 
 namespace ddfem::coupling
 {
-/// What one solve of the boundary-value problem tells.
+/// What one solve of the boundary-value problem tells. Forces MPa nm^2 and moments MPa nm^3 act on the grain.
 struct GrainSolution
 {
   fem::TractionSummary tractions;                   ///< of the infinite field over the closed surface: must balance
   double force_imbalance = 0, moment_imbalance = 0; ///< see imbalance()
   fem::SolveInfo solve;
-  double fixed_reaction =
-      0; ///< force on the grain along the outward normal of the fixed face, MPa nm^2; tension positive
+  double load_at_rest = 0;    ///< Q of the dislocations with the platen at rest, see PlatenMotion
+  double motion = 0;          ///< q of the platen
+  double load = 0;            ///< Q = load_at_rest + q times the response to unit motion
+  double fixed_reaction = 0;  ///< force along the outward normal of the fixed face, tension positive
   double platen_reaction = 0; ///< the same at the platen
+  Vec3 platen_force = Vec3::Zero(), platen_moment = Vec3::Zero(); ///< moments about the centre of the platen face
+  Vec3 fixed_force = Vec3::Zero(), fixed_moment = Vec3::Zero();   ///< moments about the centre of the fixed face
+};
+
+/// Vectors over the boundary nodes of this rank that the energies of the grain are made of.
+struct BoundaryState
+{
+  std::vector<dealii::Tensor<1, 3>> load;       ///< f = -int N (sigma~ n) dS, images included, MPa nm^2
+  std::vector<dealii::Tensor<1, 3>> reaction;   ///< of the held faces, total field, MPa nm^2
+  std::vector<dealii::Tensor<1, 3>> correction; ///< u^, nm
+  std::vector<dealii::Tensor<1, 3>> infinite;   ///< u~ since the reference, and images, nm
 };
 
 /// Mesh, boundary conditions and correction field of a finite grain. Collective over the communicator. Loading axis: the
@@ -45,7 +59,8 @@ public:
   double section() const { return platen_area; } ///< area of the platen face, nm^2
   double volume() const;                         ///< of the mesh, nm^3
   std::uint64_t n_dofs() const;
-  /// Nominal stress per nominal strain of the grain under its own boundary conditions (one solve without dislocations), MPa.
+  /// Nominal stress per nominal strain (see Platen) of the grain under its own boundary conditions (one solve without
+  /// dislocations), MPa; zero for a grain that is not held.
   double unit_load_modulus() const { return modulus; }
 
   /// Takes the state of the network as the one that prescribed displacements are counted from: relaxed
@@ -53,12 +68,21 @@ public:
   void set_reference(const Network &network, const LineSystem &lines);
   /// Adds the displacement of the swept triangles to u~ at all boundary nodes.
   void add_swept(const SweptArea &area);
-  /// Solves for the correction at platen displacement @p u (nm, along the outward normal of the platen).
-  GrainSolution solve(const LineSystem &lines, double u);
+  const Platen &platen() const { return *platen_motion; }
+  /// Solves for the correction with the platen at rest.
+  GrainSolution solve_at_rest(const LineSystem &lines);
+  /// Moves the platen to q: adds the response to unit motion to the solution at rest, without a solve.
+  void move_platen(GrainSolution &solution, double q);
+  /// Both: the correction at the platen motion @p q.
+  GrainSolution solve(const LineSystem &lines, double q);
+  BoundaryState boundary_state() const;
+  MPI_Comm mpi_communicator() const { return communicator; }
   /// Correction stress at points inside the grain, MPa: finite elements and images of the last solve; the same bits on all
   /// ranks.
   std::vector<SymTensor> correction_stress(const std::vector<Vec3> &points) const;
-  /// The same at the segments of a network, at points that are dense enough for the images near the surface.
+  /// The part of the finite elements in it.
+  std::vector<SymTensor> stress_of_elements(const std::vector<Vec3> &points) const;
+  /// All of it at the segments of a network, at points that are dense enough for the images near the surface.
   SegmentField correction_at_segments(const Network &network) const;
   /// u~ + u^ at the boundary nodes of this rank since the reference state, and these nodes, nm.
   std::vector<Vec3> boundary_displacement() const;
@@ -69,11 +93,14 @@ public:
 private:
   void find_platens(const GrainParameters &parameters);
   void build_shape(const GrainParameters &parameters);
+  void describe_platen(const std::vector<PolyhedronShape::Facet> &facets);
   void relax(const LineSystem &lines);
+  void set_unit_response();
+  std::vector<dealii::Tensor<1, 3>> prescribed_at_rest() const;
+  double platen_load() const;
   void find_image_planes();
   void update_images(const LineSystem &lines);
-  std::vector<dealii::Tensor<1, 3>> image_displacement() const;
-  std::vector<dealii::Tensor<1, 3>> prescribed(double u) const;
+  void add_images(const std::vector<Vec3> &points, std::vector<SymTensor> &stress) const;
 
   GrainParameters parameters;
   IsotropicMedium medium;
@@ -85,10 +112,17 @@ private:
   double platen_sign = 1.0; ///< outward normal of the platen along the axis
   double gauge_length = 0, platen_area = 0, modulus = 0;
   std::unique_ptr<GrainShape> grain_shape;
+  std::unique_ptr<Platen> platen_motion;
+  Vec3 fixed_centre = Vec3::Zero();
   std::unique_ptr<fem::ElasticProblem> problem;
+  std::vector<dealii::Tensor<1, 3>> pattern; ///< displacement at the boundary nodes for q = 1, zero off the platen
+  std::vector<double> unit_response,
+      at_rest;                ///< unknowns of this rank: of q = 1 without dislocations; of the last solve at rest
+  double load_per_motion = 0; ///< Q per q
   std::vector<ImagePlane> planes_of_images;
   ImageSettings image_settings;
   SurfaceImages images;                                    ///< of the lines of the last solve
+  std::vector<dealii::Tensor<1, 3>> image_displacement;    ///< of these, at the boundary nodes, nm
   std::vector<dealii::Tensor<1, 3>> reference_correction;  ///< u^(0), images included, at the boundary nodes
   std::vector<dealii::Tensor<1, 3>> infinite_displacement; ///< u~ since the reference, at the boundary nodes
 };

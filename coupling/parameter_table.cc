@@ -148,7 +148,21 @@ void add_boundary(std::vector<ParameterEntry> &t)
   t.push_back({s, "Platen face", "", words(), "", "Face that the platen moves; empty: z+, top or end."});
   t.push_back(
       {s, "Platen contact", "clamped", one_of("clamped|frictionless"), "",
-       "Clamped: all displacements of the two faces prescribed; frictionless: only those along the loading axis."});
+       "Clamped: all displacements of the two faces prescribed; frictionless: only those that drive the platen (see "
+       "Platen motion)."});
+  t.push_back(
+      {s, "Platen motion", "axial", one_of("axial|transverse|twist|bending|none"), "",
+       "Axial: along the axis. Transverse: the platen face moves along Transverse axis and is free otherwise, the "
+       "fixed "
+       "face is clamped (end load of a cantilever). Twist: the platen rotates about the axis (right-handed about its "
+       "outward normal); the displacement along the axis is held (clamped) or free on both faces (frictionless). "
+       "Bending: "
+       "the platen face rotates, positive stretches the side of positive Transverse axis; its other displacements are "
+       "free. None: both faces are free. Nominal strain and stress: displacement over height and force over area of "
+       "the "
+       "platen face; in twist those of the outermost point, in bending of the outermost fibre."});
+  t.push_back({s, "Transverse axis", "x", one_of("x|y|z"), "",
+               "Direction across the axis of a transverse motion, or across which the strain of a bent grain varies."});
   t.push_back(
       {s, "Impenetrable faces", "", words(), "",
        "Faces at which lines stop, separated by ';'. Lines leave through all others. Besides those named above, a "
@@ -167,9 +181,31 @@ void add_loading(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Loading";
   t.push_back(
-      {s, "Type", "strain rate", one_of("none|stress|strain rate"), "",
-       "Finite grain: none (relaxation between the held faces) or strain rate (platen displacement rate over height). "
-       "Periodic cell: stress or strain rate. Infinite body: stress."});
+      {s, "Type", "strain rate", one_of("none|stress|strain rate|stages"), "",
+       "Finite grain: none (relaxation between the held faces), strain rate (of the platen, nominal) or stages. "
+       "Periodic cell: stress, strain rate, stages or none. Infinite body: stress, stages of given stress, or none."});
+  t.push_back(
+      {s, "Stages", "", words(), "",
+       "List of stages for Type = stages, separated by ';', each as 'KIND [NUMBER] until END NUMBER' in SI units. "
+       "Kinds: "
+       "strain rate R; stress rate R; constant stress [S] (creep at the stress reached, or at S at once); free (the "
+       "same "
+       "at zero); hold (the displacement reached); unload R (strain rate of this magnitude towards the stress at its "
+       "end). Ends: duration, strain, stress, plastic strain (strain minus stress over modulus); all but a duration "
+       "count "
+       "from the start of the run. Strain and stress are nominal, along the axis (see Platen motion). The last stage "
+       "may lack "
+       "an end; otherwise the run ends with it. Example: strain rate -1e4 until strain -2e-3; hold until duration "
+       "1e-8; "
+       "unload 1e4 until stress 0."});
+  t.push_back(
+      {s, "Stage tolerance", "1e-3", between(1e-6, 0.1), "",
+       "Ends of stages that are not known beforehand (a stress under a strain rate, a plastic strain, ...) are met "
+       "to this fraction of the way from the start of the stage; the steps shrink accordingly."});
+  t.push_back({s, "Machine stiffness", "0", not_negative(), "N/m",
+               "Stiffness of the testing machine in series with an axially or transversely loaded grain: strain rates, "
+               "holds and "
+               "unloading are then those of the machine's drive; 0: rigid."});
   t.push_back(
       {s, "Axis", "0 0 1", vector_of(3), "",
        "Loading axis in the sample frame (periodic cell; the finite grain is loaded along the normal of its platen)."});

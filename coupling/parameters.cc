@@ -182,6 +182,13 @@ void read_grain(const InputDeck &deck, Parameters &p)
   p.grain.fixed_face = deck.text("Boundary conditions/Fixed face");
   p.grain.platen_face = deck.text("Boundary conditions/Platen face");
   p.grain.clamped = deck.text("Boundary conditions/Platen contact") == "clamped";
+  const std::string motion = deck.text("Boundary conditions/Platen motion");
+  p.grain.platen_motion = motion == "axial"        ? PlatenMotion::axial
+                          : motion == "transverse" ? PlatenMotion::transverse
+                          : motion == "twist"      ? PlatenMotion::twist
+                          : motion == "bending"    ? PlatenMotion::bending
+                                                   : PlatenMotion::none;
+  p.grain.across_axis = deck.text("Boundary conditions/Transverse axis")[0] - 'x';
   p.grain.impenetrable_faces = deck.items("Boundary conditions/Impenetrable faces");
   p.grain.reference = deck.text("Boundary conditions/Reference state") == "relaxed" ? ReferenceState::relaxed
                                                                                     : ReferenceState::perfect_crystal;
@@ -189,23 +196,65 @@ void read_grain(const InputDeck &deck, Parameters &p)
       deck.text("Boundary conditions/Ray direction") == "normal" ? RayDirection::normal : RayDirection::radial;
 }
 
-void read_loading(const InputDeck &deck, Parameters &p)
+/// The stages of Loading/Type; the simple types are lists of one.
+std::vector<Stage> read_stages(const InputDeck &deck)
 {
   const std::string type = deck.text("Loading/Type");
-  p.loading.type = type == "none"     ? LoadingType::none
-                   : type == "stress" ? LoadingType::stress
-                                      : LoadingType::strain_rate;
+  const std::vector<std::string> items = deck.items("Loading/Stages");
+  if (type != "stages" && !items.empty())
+    deck.reject("Loading/Stages", "needs Loading/Type = stages; it is " + type);
+  if (type == "strain rate")
+    return {{.kind = StageKind::strain_rate, .rate = deck.number("Loading/Strain rate") * units::per_second}};
+  if (type != "stages")
+  {
+    // A grain without load stays between its platens, a cell without load has no stress.
+    if (deck.text("Mode") == "finite")
+      return {{.kind = StageKind::hold}};
+    return {{.kind = StageKind::constant_stress, .jumps = true}};
+  }
+  if (items.empty())
+    deck.reject("Loading/Stages", "a loading by stages needs at least one");
+  try
+  {
+    return parse_stages(items);
+  }
+  catch (const std::invalid_argument &e)
+  {
+    deck.reject("Loading/Stages", e.what());
+  }
+}
+
+void check_loading(const InputDeck &deck, const Parameters &p)
+{
+  if (p.mode == Mode::finite && p.loading.type == LoadingType::tensor)
+    deck.reject("Loading/Type", "a finite grain is loaded by 'strain rate', 'stages' or 'none'");
+  if (p.mode == Mode::infinite)
+    for (const Stage &s : p.loading.stages)
+      if ((s.kind != StageKind::stress_rate && s.kind != StageKind::constant_stress) || s.end == StageEnd::strain)
+        deck.reject("Loading/Type", "an infinite body has no strain to prescribe: it is loaded by 'stress', 'none', or "
+                                    "stages of stress rate and constant stress that do not end at a strain");
+  const PlatenMotion motion = p.grain.platen_motion;
+  if (p.mode == Mode::finite && motion == PlatenMotion::none && deck.text("Loading/Type") != "none")
+    deck.reject("Loading/Type", "a grain with Boundary conditions/Platen motion = none has no load: allowed is 'none'");
+  if (p.loading.machine_stiffness > 0 &&
+      (p.mode != Mode::finite || (motion != PlatenMotion::axial && motion != PlatenMotion::transverse)))
+    deck.reject("Loading/Machine stiffness",
+                "only a platen that pulls or pushes a finite grain has a machine behind it");
+}
+
+void read_loading(const InputDeck &deck, Parameters &p)
+{
+  p.loading.type = deck.text("Loading/Type") == "stress" ? LoadingType::tensor : LoadingType::stages;
   const Vec3 axis = to_vec3(deck.numbers("Loading/Axis", 3));
   if (axis.norm() == 0)
     deck.reject("Loading/Axis", "must not be zero");
   p.loading.axis = axis.normalized();
-  p.loading.strain_rate = deck.number("Loading/Strain rate") * units::per_second;
+  p.loading.stages = read_stages(deck);
+  p.loading.stage_tolerance = deck.number("Loading/Stage tolerance");
+  p.loading.machine_stiffness = deck.number("Loading/Machine stiffness") * units::newton_per_metre;
   p.loading.stress = to_tensor(deck.numbers("Loading/Stress", 6)) * units::pascal;
   p.loading.stress_rate = to_tensor(deck.numbers("Loading/Stress rate", 6)) * units::pascal / units::second;
-  if (p.mode == Mode::finite && p.loading.type == LoadingType::stress)
-    deck.reject("Loading/Type", "a finite grain is loaded by 'strain rate' or 'none'");
-  if (p.mode == Mode::infinite && p.loading.type == LoadingType::strain_rate)
-    deck.reject("Loading/Type", "an infinite body is loaded by 'stress' or 'none'");
+  check_loading(deck, p);
 }
 
 /// The fields of one item 'a / b / c'; exactly @p n.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "coupling/parameter_table.h"
+#include "coupling/platen.h"
+#include "coupling/stages.h"
 #include "dd/crystal/orientation.h"
 #include "dd/crystal/slip_systems.h"
 #include "dd/elasticity/isotropic.h"
@@ -39,6 +41,8 @@ struct GrainParameters
   fem::ElasticProblem::Parameters elasticity;
   std::string fixed_face, platen_face; ///< names; empty: the lowest and highest along z
   bool clamped = true;
+  PlatenMotion platen_motion = PlatenMotion::axial;
+  int across_axis = 0; ///< see Platen
   std::vector<std::string> impenetrable_faces;
   ReferenceState reference = ReferenceState::relaxed;
   RayDirection ray_direction = RayDirection::normal;
@@ -47,16 +51,17 @@ struct GrainParameters
 
 enum class LoadingType
 {
-  none,
-  stress,
-  strain_rate
+  stages, ///< along the axis
+  tensor  ///< a stress tensor and its rate; periodic and infinite only
 };
 
 struct LoadingParameters
 {
-  LoadingType type = LoadingType::none;
+  LoadingType type = LoadingType::stages;
   Vec3 axis = Vec3::UnitZ();
-  double strain_rate = 0;                    ///< 1/ns
+  std::vector<Stage> stages;
+  double stage_tolerance = 1e-3;
+  double machine_stiffness = 0;              ///< MPa nm; 0: rigid
   SymTensor stress = SymTensor::Zero();      ///< MPa
   SymTensor stress_rate = SymTensor::Zero(); ///< MPa/ns
 };

@@ -70,7 +70,12 @@ constexpr const char *history_header =
     "plastic strain zz [-],plastic strain xy [-],plastic strain xz [-],plastic strain yz [-],line length [m],"
     "dislocation density [1/m^2],segments,nodes,junction nodes,surface nodes,collisions,surface exits,"
     "reaction fixed face [N],reaction platen [N],FEM iterations,force imbalance [-],moment imbalance [-],"
-    "integrator stages,max speed [m/s],wall time [s]\n";
+    "integrator stages,max speed [m/s],wall time [s],stage,elastic strain [-],"
+    "platen force x [N],platen force y [N],platen force z [N],"
+    "platen moment x [N m],platen moment y [N m],platen moment z [N m],"
+    "fixed face force x [N],fixed face force y [N],fixed face force z [N],"
+    "fixed face moment x [N m],fixed face moment y [N m],fixed face moment z [N m],"
+    "work [J],stored energy [J],dissipated energy [J],dissipated by topology [J],energy mismatch [-]\n";
 } // namespace
 
 void write_file(const std::string &path, const std::string &content)
@@ -156,8 +161,18 @@ void RunOutput::add_history(const HistoryRow &r)
   put(r.line_length / units::metre), put(r.density / units::per_square_metre), put(r.segments), put(r.nodes),
       put(r.junctions), put(r.surface_nodes), put(r.collisions), put(r.surface_exits),
       put(r.fixed_reaction / units::newton), put(r.platen_reaction / units::newton), put(r.fem_iterations),
-      put(r.force_imbalance), put(r.moment_imbalance), put(r.stages), put(r.max_speed / units::metre_per_second);
-  o << r.wall_time << "\n";
+      put(r.force_imbalance), put(r.moment_imbalance), put(r.stages), put(r.max_speed / units::metre_per_second),
+      put(r.wall_time), put(r.stage), put(r.elastic_strain);
+  const auto put_vector = [&](const Vec3 &v, const double unit)
+  {
+    for (Eigen::Index c = 0; c < 3; ++c)
+      put(v[c] / unit);
+  };
+  put_vector(r.platen_force, units::newton), put_vector(r.platen_moment, units::newton_metre);
+  put_vector(r.fixed_force, units::newton), put_vector(r.fixed_moment, units::newton_metre);
+  put(r.work / units::joule), put(r.stored_energy / units::joule), put(r.dissipated_energy / units::joule),
+      put(r.dissipated_by_topology / units::joule);
+  o << r.energy_mismatch << "\n";
   history << o.str() << std::flush;
   if (!history)
     throw FileAccessError(path + "/history.csv: cannot be written");

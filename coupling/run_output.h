@@ -27,8 +27,15 @@ struct HistoryRow
   unsigned fem_iterations = 0;
   double force_imbalance = 0, moment_imbalance = 0;
   unsigned stages = 0;
-  double max_speed = 0; ///< nm/ns
-  double wall_time = 0; ///< s
+  double max_speed = 0;                                           ///< nm/ns
+  double wall_time = 0;                                           ///< s
+  std::size_t stage = 1;                                          ///< of the loading, from 1
+  double elastic_strain = 0;                                      ///< stress over modulus
+  Vec3 platen_force = Vec3::Zero(), platen_moment = Vec3::Zero(); ///< MPa nm^2, MPa nm^3; sample frame, on the grain
+  Vec3 fixed_force = Vec3::Zero(), fixed_moment = Vec3::Zero();
+  double work = 0, stored_energy = 0, dissipated_energy = 0; ///< since the start, MPa nm^3
+  double dissipated_by_topology = 0;                         ///< part of dissipated_energy
+  double energy_mismatch = 0;                                ///< over the largest of work and dissipation
 };
 
 /// Writes @p content to @p path under a temporary name and renames it. Throws FileAccessError.

@@ -103,22 +103,6 @@ ForceEnvironment Simulation::environment()
   return e;
 }
 
-SymTensor Simulation::applied_stress() const
-{
-  if (parameters.mode == Mode::finite || parameters.loading.type == LoadingType::none)
-    return SymTensor::Zero();
-  if (parameters.loading.type == LoadingType::stress)
-    return parameters.loading.stress + time * parameters.loading.stress_rate;
-  const Vec3 &a = parameters.loading.axis;
-  const double sigma = parameters.medium.youngs_modulus() * (nominal_strain() - axial_plastic_strain());
-  return sigma * symmetric_part(a * a.transpose());
-}
-
-double Simulation::nominal_strain() const
-{
-  return parameters.loading.type == LoadingType::strain_rate ? parameters.loading.strain_rate * time : 0.0;
-}
-
 double Simulation::axial_plastic_strain() const
 {
   const Vec3 a = finite_grain ? finite_grain->loading_axis() : parameters.loading.axis;
@@ -130,24 +114,35 @@ double Simulation::reference_volume() const
   return finite_grain ? finite_grain->volume() : parameters.cell.volume();
 }
 
-void Simulation::update_correction()
+void Simulation::solve_lines()
 {
   if (!finite_grain)
     return;
-  const Timing::Scope scope(timing, "elastic solve");
-  solution = finite_grain->solve(closed_line_system(), nominal_strain() * finite_grain->height());
+  solution = finite_grain->solve_at_rest(closed_line_system());
   if (solution.force_imbalance > max_imbalance || solution.moment_imbalance > max_imbalance)
     throw std::runtime_error("the tractions of the dislocations over the closed surface do not balance: net force " +
                              std::to_string(solution.force_imbalance) + ", net moment " +
                              std::to_string(solution.moment_imbalance) + " of the sum of their magnitudes");
-  correction = finite_grain->correction_at_segments(dislocations);
+}
+
+void Simulation::update_correction(const LineWork &lines)
+{
+  const Timing::Scope scope(timing, "elastic solve");
+  solve_lines();
+  update_loading(lines);
+  if (finite_grain)
+    correction = finite_grain->correction_at_segments(dislocations);
 }
 
 void Simulation::start()
 {
+  const Timing::Scope scope(timing, "elastic solve");
   if (finite_grain)
     finite_grain->set_reference(dislocations, closed_line_system());
-  update_correction();
+  solve_lines();
+  start_loading();
+  if (finite_grain)
+    correction = finite_grain->correction_at_segments(dislocations);
 }
 
 IntegratorStep Simulation::move_lines()
@@ -155,8 +150,14 @@ IntegratorStep Simulation::move_lines()
   const Timing::Scope scope(timing, "forces and motion");
   const ForceSettings settings = parameters.force_settings();
   const ForceEnvironment e = environment();
-  const auto velocity = [&](const Network &n) {
-    return glide_velocities(n, compute_nodal_forces(n, settings, e, communicator).total, parameters.mobility, e.shape);
+  forces_at_start.clear();
+  // The integrator asks first at the start of the step, and last at the end of the one that it accepts.
+  const auto velocity = [&](const Network &n)
+  {
+    forces_at_end = compute_nodal_forces(n, settings, e, communicator).total;
+    if (forces_at_start.empty())
+      forces_at_start = forces_at_end;
+    return glide_velocities(n, forces_at_end, parameters.mobility, e.shape);
   };
   std::vector<double> drag(dislocations.node_capacity(), 0.0);
   for (const NodeIndex i : dislocations.nodes())
@@ -196,9 +197,10 @@ void Simulation::change_topology(TopologyContext &context)
     dislocations.clean();
 }
 
-void Simulation::book()
+void Simulation::book(LineWork &work)
 {
   const Timing::Scope scope(timing, "swept area");
+  work.topology = work_on_swept_area() - work.external;
   total_plastic_strain += plastic_strain_volume(swept) / reference_volume();
   if (finite_grain)
     finite_grain->add_swept(swept);
@@ -208,9 +210,12 @@ void Simulation::book()
 double Simulation::time_left() const
 {
   double left = parameters.stop.final_time - time;
-  if (const double rate = std::abs(parameters.loading.strain_rate);
-      parameters.stop.final_strain > 0 && parameters.loading.type == LoadingType::strain_rate && rate > 0)
-    left = std::min(left, parameters.stop.final_strain / rate - time);
+  if (parameters.loading.type == LoadingType::stages)
+  {
+    left = std::min(left, loading.time_left());
+    if (parameters.stop.final_strain > 0)
+      left = std::min(left, loading.time_to_strain(parameters.stop.final_strain));
+  }
   return left;
 }
 
@@ -218,6 +223,8 @@ bool Simulation::must_stop(const IntegratorStep &step) const
 {
   const StopCriteria &stop = parameters.stop;
   return time_left() <= 1e-12 * stop.final_time || step_number >= stop.max_steps ||
+         (parameters.loading.type == LoadingType::stages && loading.finished()) ||
+         (stop.final_strain > 0 && std::abs(nominal_strain()) >= stop.final_strain) ||
          (stop.final_plastic_strain > 0 && to_matrix(total_plastic_strain).norm() >= stop.final_plastic_strain) ||
          (stop.equilibrium_speed > 0 && step_number > 1 && step.max_speed < stop.equilibrium_speed);
 }
@@ -240,13 +247,14 @@ RunEnd Simulation::run(RunOutput &output)
   while (!must_stop(step))
   {
     step = move_lines();
+    LineWork work = work_of_step(step);
     TopologyContext context = topology_context(step.displacement);
     change_topology(context);
-    book();
+    book(work);
     time += step.dt;
     ++step_number;
     check_consistency();
-    update_correction();
+    update_correction(work);
     const bool interrupted = interrupted_anywhere(communicator);
     report(output, step, interrupted || must_stop(step));
     if (interrupted)

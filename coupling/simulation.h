@@ -1,8 +1,10 @@
 // The time loop.
 #pragma once
 
+#include "coupling/energy_balance.h"
 #include "coupling/finite_grain.h"
 #include "coupling/initial_network.h"
+#include "coupling/loading.h"
 #include "coupling/parameters.h"
 #include "coupling/run_output.h"
 #include "coupling/timing.h"
@@ -51,7 +53,11 @@ public:
   const FiniteGrain *grain() const { return finite_grain.get(); }
   const SymTensor &plastic_strain() const { return total_plastic_strain; }
   double current_time() const { return time; } ///< ns
-  double nominal_strain() const;               ///< of the loading, along its axis
+  /// Nominal strain and stress along the loading; zero strain for a stress given as a tensor.
+  LoadState load_state() const;
+  double nominal_strain() const { return load_state().strain; }
+  std::size_t stage() const { return loading.stage(); } ///< of the loading, from 0
+  const EnergyBalance &energy_balance() const { return energy; }
   /// Stress that acts on the dislocations besides their own fields in periodic and infinite mode, MPa.
   SymTensor applied_stress() const;
 
@@ -61,10 +67,17 @@ private:
   LineSystem closed_line_system();
   ForceEnvironment environment();
   TopologyContext topology_context(std::vector<Vec3> displacement);
-  void update_correction();
+  void solve_lines();
+  void update_correction(const LineWork &lines);
+  void start_loading();
+  void update_loading(const LineWork &lines);
+  void apply_load(const LineWork &lines);
+  BodyResponse body_response() const;
+  LineWork work_of_step(const IntegratorStep &step) const;
+  double work_on_swept_area() const;
   IntegratorStep move_lines();
   void change_topology(TopologyContext &context);
-  void book();
+  void book(LineWork &work);
   double axial_plastic_strain() const;
   double reference_volume() const;
   double time_left() const;
@@ -73,6 +86,7 @@ private:
   HistoryRow history_row(const IntegratorStep &step) const;
   void report(RunOutput &output, const IntegratorStep &step, bool last);
   std::string status_line(const IntegratorStep &step) const;
+  std::string energy_line() const;
 
   Parameters parameters;
   MPI_Comm communicator;
@@ -84,6 +98,9 @@ private:
   StabilisedRungeKutta integrator;
   SegmentField correction; ///< of the last solve, at the segments
   GrainSolution solution;
+  Loading loading;
+  EnergyBalance energy;
+  std::vector<Vec3> forces_at_start, forces_at_end; ///< of the lines in the last step, MPa nm^2, by NodeIndex::value
   CandidateList candidates;
   SweptArea swept;
   TopologyCounts counts;

@@ -25,7 +25,9 @@ HistoryRow Simulation::history_row(const IntegratorStep &step) const
   r.step = step_number;
   r.time = time;
   r.dt = step.dt;
-  r.strain = nominal_strain();
+  r.strain = load_state().strain;
+  r.stress = load_state().stress;
+  r.stage = loading.stage() + 1;
   r.plastic_strain = total_plastic_strain;
   r.axial_plastic_strain = axial_plastic_strain();
   for (const SegmentIndex s : dislocations.segments())
@@ -45,7 +47,11 @@ HistoryRow Simulation::history_row(const IntegratorStep &step) const
   r.wall_time = timing.elapsed();
   if (finite_grain)
   {
-    r.stress = solution.platen_reaction / finite_grain->section();
+    r.elastic_strain = loading.elastic_strain();
+    r.platen_force = solution.platen_force;
+    r.platen_moment = solution.platen_moment;
+    r.fixed_force = solution.fixed_force;
+    r.fixed_moment = solution.fixed_moment;
     r.fixed_reaction = solution.fixed_reaction;
     r.platen_reaction = solution.platen_reaction;
     r.fem_iterations = solution.solve.iterations;
@@ -53,7 +59,12 @@ HistoryRow Simulation::history_row(const IntegratorStep &step) const
     r.moment_imbalance = solution.moment_imbalance;
   }
   else
-    r.stress = parameters.loading.axis.dot(contract(applied_stress(), parameters.loading.axis));
+    r.elastic_strain = r.stress / parameters.medium.youngs_modulus();
+  r.work = energy.energies().work;
+  r.stored_energy = energy.energies().stored;
+  r.dissipated_energy = energy.energies().dissipated;
+  r.dissipated_by_topology = energy.energies().topology;
+  r.energy_mismatch = energy.relative_mismatch();
   return r;
 }
 
@@ -64,6 +75,10 @@ std::string Simulation::status_line(const IntegratorStep &step) const
   out << std::setprecision(4) << "step " << step_number << "  t " << time << " ns  dt " << step.dt << " ns  strain "
       << r.strain << "  stress " << r.stress << " MPa  plastic " << r.axial_plastic_strain << "  segments "
       << r.segments;
+  if (parameters.loading.stages.size() > 1)
+    out << "  stage " << r.stage << "/" << parameters.loading.stages.size();
+  if (energy.energies().dissipated > 0)
+    out << "  energy mismatch " << std::setprecision(2) << 100 * r.energy_mismatch << " %";
   double done = time / parameters.stop.final_time;
   if (parameters.stop.final_strain > 0)
     done = std::max(done, std::abs(r.strain) / parameters.stop.final_strain);
@@ -99,8 +114,18 @@ void Simulation::report(RunOutput &output, const IntegratorStep &step, const boo
                std::to_string(counts.annihilations) + ", node splits " + std::to_string(counts.splits) +
                ", surface exits " + std::to_string(counts.surface_exits) + ", segments halved " +
                std::to_string(counts.refinements) + ", nodes removed " + std::to_string(counts.coarsenings));
+    output.log(energy_line());
     write_file(output.directory() + "/timing.txt", timing.table());
   }
+}
+
+std::string Simulation::energy_line() const
+{
+  const Energies &e = energy.energies();
+  std::ostringstream out;
+  out << std::setprecision(5) << "work " << e.work / units::joule << " J = stored " << e.stored / units::joule
+      << " J + dissipated " << e.dissipated / units::joule << " J + mismatch " << e.mismatch() / units::joule << " J";
+  return out.str();
 }
 
 std::string Simulation::summary() const

@@ -57,7 +57,11 @@ public:
   }
 
   SolveInfo solve(const std::vector<dealii::Tensor<1, 3>> &values);
-  dealii::Tensor<1, 3> reaction(dealii::types::boundary_id boundary) const;
+  NodalVector nodal_reactions() const;
+  /// Sum of term(x, force) over the nodes x (nm) where the conditions of a boundary exert a force.
+  template <class NodeTerm>
+  dealii::Tensor<1, 3> sum_of_reactions(dealii::types::boundary_id boundary, NodeTerm &&term) const;
+  std::vector<dealii::Tensor<1, 3>> at_boundary(const NodalVector &vector) const;
   const std::vector<double> &stress() const;
   void set_displacement(const NodalVector &owned_values);
   NodalVector from_owned(const std::vector<double> &values) const;
@@ -154,26 +158,47 @@ SolveInfo ElasticProblem::Implementation::solve(const std::vector<dealii::Tensor
   return info;
 }
 
-dealii::Tensor<1, 3> ElasticProblem::Implementation::reaction(dealii::types::boundary_id boundary) const
+NodalVector ElasticProblem::Implementation::nodal_reactions() const
 {
   NodalVector load = field_load, residual = system.make_vector();
   load += uniform_load;
   system.reactions(displacement, load, residual);
-  dealii::Tensor<1, 3> force;
-  for (const unsigned node : boundary_nodes)
+  return residual;
+}
+
+template <class NodeTerm>
+dealii::Tensor<1, 3> ElasticProblem::Implementation::sum_of_reactions(dealii::types::boundary_id boundary,
+                                                                      NodeTerm &&term) const
+{
+  const NodalVector residual = nodal_reactions();
+  dealii::Tensor<1, 3> sum;
+  for (std::size_t i = 0; i < boundary_nodes.size(); ++i)
   {
+    dealii::Tensor<1, 3> force;
     for (unsigned c = 0; c < 3; ++c)
     {
-      const int k = condition_of[node][c];
+      const int k = condition_of[boundary_nodes[i]][c];
       if (k >= 0 && conditions[static_cast<std::size_t>(k)].boundary == boundary)
       {
-        force[c] += residual.local_element(3 * node + c);
+        force[c] = residual.local_element(3 * boundary_nodes[i] + c);
       }
     }
+    sum += term(points[i], force);
   }
-  std::array<double, 3> sum = {force[0], force[1], force[2]};
-  MPI_Allreduce(MPI_IN_PLACE, sum.data(), 3, MPI_DOUBLE, MPI_SUM, grid.communicator);
-  return dealii::Tensor<1, 3>({sum[0], sum[1], sum[2]});
+  MPI_Allreduce(MPI_IN_PLACE, sum.begin_raw(), 3, MPI_DOUBLE, MPI_SUM, grid.communicator);
+  return sum;
+}
+
+std::vector<dealii::Tensor<1, 3>> ElasticProblem::Implementation::at_boundary(const NodalVector &vector) const
+{
+  std::vector<dealii::Tensor<1, 3>> result;
+  result.reserve(boundary_nodes.size());
+  for (const unsigned node : boundary_nodes)
+  {
+    result.push_back(dealii::Tensor<1, 3>(
+        {vector.local_element(3 * node), vector.local_element(3 * node + 1), vector.local_element(3 * node + 2)}));
+  }
+  return result;
 }
 
 const std::vector<double> &ElasticProblem::Implementation::stress() const
@@ -260,19 +285,31 @@ void ElasticProblem::set_relative_tolerance(double tolerance)
 
 std::vector<dealii::Tensor<1, 3>> ElasticProblem::boundary_displacements() const
 {
-  std::vector<dealii::Tensor<1, 3>> result;
-  for (const unsigned node : implementation->boundary_nodes)
-  {
-    const auto &u = implementation->displacement;
-    result.push_back(dealii::Tensor<1, 3>(
-        {u.local_element(3 * node), u.local_element(3 * node + 1), u.local_element(3 * node + 2)}));
-  }
-  return result;
+  return implementation->at_boundary(implementation->displacement);
 }
 
 dealii::Tensor<1, 3> ElasticProblem::reaction(dealii::types::boundary_id boundary) const
 {
-  return implementation->reaction(boundary);
+  return implementation->sum_of_reactions(boundary, [](const auto &, const auto &force) { return force; });
+}
+
+dealii::Tensor<1, 3> ElasticProblem::reaction_moment(dealii::types::boundary_id boundary,
+                                                     const dealii::Point<3> &about) const
+{
+  return implementation->sum_of_reactions(boundary, [&](const auto &x, const auto &force)
+                                          { return cross_product_3d(x - about, force); });
+}
+
+std::vector<dealii::Tensor<1, 3>> ElasticProblem::boundary_reactions() const
+{
+  return implementation->at_boundary(implementation->nodal_reactions());
+}
+
+std::vector<dealii::Tensor<1, 3>> ElasticProblem::boundary_loads() const
+{
+  NodalVector load = implementation->field_load;
+  load += implementation->uniform_load;
+  return implementation->at_boundary(load);
 }
 
 std::vector<dealii::SymmetricTensor<2, 3>> ElasticProblem::stress_at(const std::vector<dealii::Point<3>> &points) const

@@ -124,6 +124,13 @@ public:
   /// zero. An unknown on an edge of two boundaries that both prescribe it counts for the one that comes first in the
   /// conditions.
   dealii::Tensor<1, 3> reaction(dealii::types::boundary_id boundary) const;
+  /// Moment (MPa nm^3) of the same nodal forces about a point (nm).
+  dealii::Tensor<1, 3> reaction_moment(dealii::types::boundary_id boundary, const dealii::Point<3> &about) const;
+  /// These nodal forces (MPa nm^2) at boundary_points(), of all conditions; zero where nothing is prescribed.
+  std::vector<dealii::Tensor<1, 3>> boundary_reactions() const;
+  /// Nodal forces (MPa nm^2) of the loads at boundary_points(): f = -int N . (sigma~ n) dS and uniform tractions. With the
+  /// reactions they are K u^, whose product with a nodal displacement is the work of sigma^ n. Local.
+  std::vector<dealii::Tensor<1, 3>> boundary_loads() const;
 
   /// Recovered stress sigma^ (MPa), continuous, at points (nm). Points must be the same on all ranks, and all ranks get
   /// the same bits. Calls with the same index for about the same point are faster (it starts in the cell of the

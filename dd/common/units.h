@@ -8,6 +8,11 @@ inline constexpr double second = 1e9;  ///< ns per s
 inline constexpr double pascal = 1e-6; ///< MPa per Pa
 /// MPa nm^2 per N: 1 N = 1 Pa m^2 = 1e-6 MPa * 1e18 nm^2.
 inline constexpr double newton = pascal * metre * metre;
+/// MPa nm^3 per N m, and per J.
+inline constexpr double newton_metre = newton * metre;
+inline constexpr double joule = newton_metre;
+/// MPa nm per N/m.
+inline constexpr double newton_per_metre = newton / metre;
 /// MPa ns per Pa s.
 inline constexpr double pascal_second = pascal * second;
 /// nm/ns per m/s.

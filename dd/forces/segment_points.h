@@ -41,10 +41,11 @@ private:
   std::vector<Vec3> points;
 };
 
-/// A stress field (MPa) at the points of the segments.
+/// The correction field at the points of the segments, MPa.
 struct SegmentField
 {
   SegmentPoints points;
-  std::vector<SymTensor> stress;
+  std::vector<SymTensor> stress;         ///< all of it
+  std::vector<SymTensor> without_images; ///< the part of the finite elements
 };
 } // namespace ddfem

@@ -1,3 +1,4 @@
+#include "fem/face_section.h"
 #include "support.h"
 
 #include <gtest/gtest.h>
@@ -168,6 +169,48 @@ TEST(Elasticity, CantileverBendsLikeATimoshenkoBeam)
   EXPECT_NEAR(tip / expected, 1., 0.01);
   EXPECT_NEAR(problem.reaction(0)[2] / force, -1., 1e-6);
   EXPECT_NEAR(problem.reaction(0)[0] / force, 0., 1e-6);
+}
+
+TEST(Elasticity, ReactionMomentOfAClampedEndHoldsTheLoad)
+{
+  const auto mesh = make_mesh(MPI_COMM_WORLD, box({300., 80., 100.}, {4, 2, 2}, {-20., 10., 30.}));
+  ElasticProblem problem(*mesh, accurate(2), copper, {{0, {true, true, true}}});
+  const Vector traction({3., -2., 5.});
+  problem.add_uniform_traction(1, traction);
+  problem.solve(prescribe(problem, [](const Point &) { return Vector(); }));
+  const Vector force = 80. * 100. * traction;
+  for (const Point &about : {Point(-20., 50., 80.), Point(1e3, -2e3, 5e2)})
+  {
+    const Vector of_load = cross_product_3d(Point(280., 50., 80.) - about, force);
+    EXPECT_LT((problem.reaction_moment(0, about) + of_load).norm(), 1e-8 * of_load.norm());
+  }
+  EXPECT_EQ(problem.reaction_moment(1, Point()).norm(), 0.); // nothing is held there
+  // Loads and reactions at the nodes are in equilibrium.
+  Vector sum;
+  const auto loads = problem.boundary_loads(), reactions = problem.boundary_reactions();
+  for (std::size_t i = 0; i < loads.size(); ++i)
+  {
+    sum += loads[i] + reactions[i];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sum.begin_raw(), 3, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  EXPECT_LT(sum.norm(), 1e-8 * force.norm());
+}
+
+TEST(FaceSection, OfARectangleAndOfADisc)
+{
+  const auto block = make_mesh(MPI_COMM_WORLD, box({300., 80., 100.}, {4, 3, 2}, {1e5, 10., 30.}));
+  const FaceSection rectangle = face_section(*block, 1);
+  EXPECT_NEAR(rectangle.area, 80. * 100., 1e-6);
+  EXPECT_LT(rectangle.centre.distance(Point(1e5 + 300., 50., 80.)), 1e-6);
+  EXPECT_NEAR(rectangle.second[1][1] / (100. * std::pow(80., 3) / 12.), 1., 1e-9);
+  EXPECT_NEAR(rectangle.second[2][2] / (80. * std::pow(100., 3) / 12.), 1., 1e-9);
+  EXPECT_LT(std::abs(rectangle.second[0][0]) + std::abs(rectangle.second[0][1]) + std::abs(rectangle.second[1][2]),
+            1e-3);
+  const auto rod = make_mesh(MPI_COMM_WORLD, cylinder(100., 300., 5, 3));
+  const FaceSection disc = face_section(*rod, 2);
+  // Arcs are parabolas: an error of the fourth order in the angle of a face.
+  EXPECT_NEAR(trace(disc.second) / (M_PI * std::pow(100., 4) / 2.), 1., 1e-3);
+  EXPECT_EQ(face_section(*rod, 77).area, 0.);
 }
 
 TEST(Elasticity, UnloadedGrainIsExactlyAtRest)

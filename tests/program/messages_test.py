@@ -128,6 +128,18 @@ CASES = [
      ["input.prm:", "Maximum segment", "twice"]),
     ("face that does not exist", "subsection Boundary conditions\n set Platen face = top\nend\n", [],
      ["Platen face", "top", "z+"]),
+    ("stage of an unknown kind", "subsection Loading\n set Type = stages\n set Stages = pull 3 until duration 1\nend\n", [],
+     ["input.prm:", "Loading/Stages", "there is no kind 'pull'", "strain rate"]),
+    ("stages that are not asked for", "subsection Loading\n set Stages = hold\nend\n", [],
+     ["Loading/Stages", "needs Loading/Type = stages"]),
+    ("strain of an infinite body", "", ["--set", "Mode=infinite", "--set", "Loading/Type=stages", "--set", "Loading/Stages=hold"],
+     ["Loading/Type", "no strain to prescribe"]),
+    ("load of a grain that is not held", "", ["--set", "Boundary conditions/Platen motion=none"],
+     ["Loading/Type", "Platen motion = none has no load"]),
+    ("machine that twists", "", ["--set", "Boundary conditions/Platen motion=twist", "--set", "Loading/Machine stiffness=1e3"],
+     ["Loading/Machine stiffness", "pulls or pushes"]),
+    ("bending about the axis", "", ["--set", "Boundary conditions/Platen motion=bending", "--set", "Boundary conditions/Transverse axis=z"],
+     ["Boundary conditions/Transverse axis = z", "two axes across"]),
     ("loading that the mode does not have", "subsection Loading\n set Type = stress\nend\n", [], ["input.prm:", "Loading/Type"]),
 ]
 

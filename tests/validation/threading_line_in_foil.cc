@@ -2,6 +2,7 @@
 // the code's own forces and mobility it comes to rest at the tilt alpha that makes its energy E(alpha) / cos(alpha) least,
 // E ~ 1 - nu cos^2(alpha - phi). The same tilt takes the image force off a straight line near each face (Lothe's theorem; Hirth &
 // Lothe, section 5-6), so that the line is straight to leading order in the logarithm of thickness over core radius.
+#include "dd/forces/nodal_forces.h"
 #include "dd/geometry/grain_shape.h"
 #include "dd/mobility/linear_glide.h"
 #include "image_field.h"
@@ -51,7 +52,8 @@ public:
     for (int round = 0; round < rounds; ++round)
     {
       image.solve(LineSystem(wide_core, network, &shape, RayDirection::normal, nullptr, nullptr));
-      const SegmentPointStress correction = image.stress(segment_points(network));
+      SegmentField correction{SegmentPoints(network), {}, {}};
+      correction.stress = image.stress(correction.points.positions());
       ForceEnvironment environment;
       environment.shape = &shape;
       environment.correction = &correction;
