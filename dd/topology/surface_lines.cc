@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace ddfem
@@ -195,6 +196,26 @@ void bring_nodes_back(TopologyContext &context)
           exit_through_surface(context, i);
       }
 }
+
+/// Nodes that several lines hold in their planes, and that have come to where one of these ends at the surface, leave there.
+void release_nodes_at_ends(TopologyContext &context)
+{
+  Network &network = context.network;
+  constexpr double same_place = 10 * GlidePlanes::offset_quantum;
+  const std::vector<SegmentIndex> segments(network.segments().begin(), network.segments().end());
+  for (const SegmentIndex s : segments)
+  {
+    if (!network.contains(s) || network.length(s) > same_place)
+      continue;
+    NodeIndex i = network.start(s), end = network.end(s);
+    if (network.constraint(i) == NodeConstraint::surface)
+      std::swap(i, end);
+    if (network.constraint(i) != NodeConstraint::free || network.constraint(end) != NodeConstraint::surface)
+      continue;
+    move_node(context, i, network.position(end));
+    exit_through_surface(context, i);
+  }
+}
 } // namespace
 
 PlaneIndex common_plane(const Network &network, const NodeIndex i)
@@ -248,6 +269,7 @@ void settle_at_surface(TopologyContext &context)
     cut_protruding_lines(context);
     bring_nodes_back(context);
   }
+  release_nodes_at_ends(context);
   remove_surface_segments(context);
 }
 

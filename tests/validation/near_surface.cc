@@ -119,7 +119,7 @@ int main(int argc, char **argv)
                const double depth = coupling::GrainParameters{}.image_depth;
                if (study)
                  for (const unsigned degree : {1U, 2U})
-                   for (const double within : {0.0, 2.0, 4.0, 6.0})
+                   for (const double within : {0.0, depth})
                      straight_lines(report, within, degree, true);
                else
                  straight_lines(report, depth, 2, false);
