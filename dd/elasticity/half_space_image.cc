@@ -210,8 +210,12 @@ double SegmentImage::distance(const Vec3 &x) const
 
 LegImage::LegImage(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &b)
     : origin(mirrored(x)), mirror(medium, origin, outward, mirror_burgers(b)), c(leg_direction(b)), depth(x[2]),
-      a2(medium.a * medium.a), mu(medium.mu), nu(medium.nu)
+      mu(medium.mu), nu(medium.nu)
 {
+  constexpr double many_core_radii = 10;
+  const bool deep = depth > many_core_radii * medium.a;
+  a2 = deep ? 0.0 : medium.a * medium.a;
+  of_lambda = deep ? -0.5 * medium.a * medium.a / (1 - nu) : 0.0;
 }
 
 SymTensor LegImage::stress(const Vec3 &x) const
@@ -225,6 +229,9 @@ SymTensor LegImage::stress(const Vec3 &x) const
   sums.add_normal(r, of_chi * c, k.lambda_p, k.lambda_q);
   sums.add_tangential(r, of_psi * c, k.psi_q, k.psi_r, k.lambda_q, k.lambda_r);
   sums.add_normal(r, of_psi * c, -k.v3, 3 * k.v5);
+  const double v7 = k.v5 * k.v2;
+  sums.add_tangential(r, of_lambda * c, k.lambda_q, k.lambda_r, 3 * k.v5, -15 * v7);
+  sums.add_normal(r, of_lambda * c, 3 * k.v5 * r[2], -15 * v7 * r[2]);
   return mirror(x) + sums.stress(mu / (2 * std::numbers::pi), nu, x[2]);
 }
 
@@ -236,11 +243,18 @@ Vec3 LegImage::displacement(const Vec3 &x) const
   // The unit of length in the logarithm is a rigid translation.
   const double chi_p = -0.5 * (r[2] * k.s - std::log(k.s));
   const auto tangential = [&](const int i)
-  { return of_chi * (chi_p * c[i] - 0.5 * cx * r[i] * k.s * k.s) + of_psi * (-c[i] * k.s + cx * r[i] * k.psi_q); };
+  {
+    return of_chi * (chi_p * c[i] - 0.5 * cx * r[i] * k.s * k.s) + of_psi * (-c[i] * k.s + cx * r[i] * k.psi_q) +
+           of_lambda * (c[i] * k.lambda_p + cx * r[i] * k.lambda_q);
+  };
   const auto with_z = [&](const int i)
-  { return of_chi * (-c[i] * k.s + cx * r[i] * k.psi_q) + of_psi * (c[i] * k.lambda_p + cx * r[i] * k.lambda_q); };
-  const DisplacementSums sums{tangential(0), tangential(1), cx * (-of_chi * k.s + of_psi * k.lambda_p),
-                              with_z(0),     with_z(1),     cx * (of_chi * k.lambda_p - of_psi * k.v3)};
+  {
+    return of_chi * (-c[i] * k.s + cx * r[i] * k.psi_q) + of_psi * (c[i] * k.lambda_p + cx * r[i] * k.lambda_q) +
+           of_lambda * (-c[i] * k.v3 + 3 * cx * r[i] * k.v5);
+  };
+  const DisplacementSums sums{
+      tangential(0), tangential(1), cx * (-of_chi * k.s + of_psi * k.lambda_p - of_lambda * k.v3),
+      with_z(0),     with_z(1),     cx * (of_chi * k.lambda_p - of_psi * k.v3 + 3 * of_lambda * r[2] * k.v5)};
   return sums.displacement(mu / (2 * std::numbers::pi), mu, nu, x[2]);
 }
 

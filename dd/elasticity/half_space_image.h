@@ -61,8 +61,9 @@ private:
 };
 
 /// Image field of the half-line from @p x (z >= 0) to z = infinity, line sense away from @p x: a leg of the ends of a
-/// line. Needed where the flux of the Burgers vector of imaged segments ends, many core radii deep: the core radius only
-/// keeps it finite.
+/// line. Needed where the flux of the Burgers vector of imaged segments ends. With the core radius a the integral over the
+/// leg adds -a^2/(2(1-nu)) Lambda to what is derived in phi, up to (a/z)^4; less than ten core radii deep the core radius only
+/// keeps the image finite.
 class LegImage
 {
 public:
@@ -80,7 +81,7 @@ private:
   Vec3 origin; // of the mirror image
   RayStressField mirror;
   Vec3 c;
-  double depth, a2, mu, nu;
+  double depth, a2, of_lambda, mu, nu;
 };
 
 /// Image field of the whole line that pierces the surface at @p x (z = 0) along its normal, less the parts that

@@ -148,16 +148,19 @@ TEST(HalfSpaceImage, OfAHalfLoopWithRaysAlongTheNormalFreesTheSurface)
 
 TEST(HalfSpaceImage, OfASegmentClosedByLegsIntoTheDepthFreesTheSurface)
 {
-  const IsotropicMedium m{50e3, 0.3, 0.0};
-  const Vec3 p(0.11, 0.03, 0.4), q(-0.4, -0.2, 0.7), b(0.1, -0.2, 0.15), down(0, 0, 1);
-  const auto infinite = [&](const Vec3 &x)
-  { return SymTensor(segment_stress(m, x, p, q, b) + ray_stress(m, x, q, down, b) - ray_stress(m, x, p, down, b)); };
-  const auto image = [&](const Vec3 &x)
+  for (const double a : {0.0, 0.01, 0.03}) // the legs begin more than 10 core radii deep: errors of (a/d)^4
   {
-    return SymTensor(SegmentImage(m, p, q, b, tight).stress(x) + LegImage(m, q, b).stress(x) +
-                     LegImage(m, p, -b).stress(x));
-  };
-  EXPECT_LT(remaining_traction(infinite, image), 1e-10);
+    const IsotropicMedium m{50e3, 0.3, a};
+    const Vec3 p(0.11, 0.03, 0.4), q(-0.4, -0.2, 0.7), b(0.1, -0.2, 0.15), down(0, 0, 1);
+    const auto infinite = [&](const Vec3 &x)
+    { return SymTensor(segment_stress(m, x, p, q, b) + ray_stress(m, x, q, down, b) - ray_stress(m, x, p, down, b)); };
+    const auto image = [&](const Vec3 &x)
+    {
+      return SymTensor(SegmentImage(m, p, q, b, tight).stress(x) + LegImage(m, q, b).stress(x) +
+                       LegImage(m, p, -b).stress(x));
+    };
+    EXPECT_LT(remaining_traction(infinite, image), 1e-10 + std::pow(a / 0.4, 4));
+  }
 }
 
 TEST(HalfSpaceImage, DisplacementsHaveTheStress)
