@@ -11,6 +11,7 @@ namespace
 coupling::GrainParameters grain_parameters(const bool round)
 {
   coupling::GrainParameters p;
+  p.image_depth = 0; // the balance is that of the infinite field
   p.mesh.shape = round ? fem::MeshParameters::Shape::cylinder : fem::MeshParameters::Shape::box;
   p.mesh.size = {250, 250, 250}; // 1000 b
   p.mesh.radius = 125;
