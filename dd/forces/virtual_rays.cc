@@ -67,7 +67,7 @@ bool ray_is_free(const GrainShape &shape, const Vec3 &x, const Vec3 &d, const do
 Vec3 ray_direction(const GrainShape &shape, const RayDirection rule, const Vec3 &x)
 {
   const Vec3 normal = shape.outward_normal(x);
-  const Vec3 wanted = rule == RayDirection::normal
+  Vec3 wanted = rule == RayDirection::normal
                           ? normal
                           : Vec3((x - 0.5 * (shape.lower_corner() + shape.upper_corner())).normalized());
   if (shape.is_convex())
