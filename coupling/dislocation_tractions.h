@@ -1,26 +1,42 @@
 // The infinite-body stress of the dislocations as the load of the correction problem.
 #pragma once
 
+#include "dd/elasticity/segment_stress.h"
 #include "dd/forces/line_system.h"
+#include "dd/forces/surface_images.h"
 #include "fem/traction_field.h"
+
+#include <vector>
 
 namespace ddfem::coupling
 {
-/// Presents a LineSystem to the FEM. The stress of the non-singular theory is analytic up to the distance
-/// sqrt(d^2 + a^2) in the complex plane, d being the distance to the nearest line: that is its smooth length.
+/// Presents a LineSystem and the images of its lines to the FEM. Sources are the lines, the rays, the legs that the images leave
+/// on their faces, the images. On the face of an image the image and the lines and rays that it frees of tractions are left out:
+/// their sum is zero there. The stress of the non-singular theory is analytic up to the distance sqrt(d^2 + a^2) in the complex
+/// plane, d being the distance to the line (or mirror image): that is its smooth length.
 class DislocationTractions final : public fem::TractionField
 {
 public:
-  /// @p lines must outlive the object.
-  explicit DislocationTractions(const LineSystem &lines) : line_system(lines) {}
+  /// @p lines, without periodic images, and @p images (of the same lines; null: none) must outlive the object.
+  explicit DislocationTractions(const LineSystem &lines, const SurfaceImages *images = nullptr);
 
-  double smooth_length(const dealii::Point<3> &centre, double radius) const override;
-  void smooth_lengths(const std::vector<dealii::Point<3>> &centres, const std::vector<double> &radii,
-                      std::vector<double> &lengths) const override;
-  void stress(const std::vector<dealii::Point<3>> &points,
-              std::vector<dealii::SymmetricTensor<2, 3>> &values) const override;
+  unsigned n_sources() const override;
+  void smooth_lengths(const dealii::Point<3> &centre, double radius, std::span<const unsigned> sources,
+                      std::span<double> lengths) const override;
+  void add_stress(std::span<const unsigned> sources, std::span<const dealii::Point<3>> points,
+                  std::span<dealii::SymmetricTensor<2, 3>> values) const override;
+  bool vanishes_on(unsigned source, dealii::types::boundary_id boundary) const override;
 
 private:
+  double distance(unsigned source, const Vec3 &x) const;
+  /// Number of the image that a source is; beyond n_images() for others.
+  std::size_t image_number(unsigned source) const { return source - lines.size() - rays.size(); }
+  bool is_image(unsigned source) const { return source >= lines.size() + rays.size(); }
+
   const LineSystem &line_system;
+  const SurfaceImages *images;
+  std::vector<VirtualRay> ray_list; ///< rays of the lines, then legs
+  std::vector<SegmentStressField> lines;
+  std::vector<RayStressField> rays;
 };
 } // namespace ddfem::coupling

@@ -1,7 +1,5 @@
 #include "coupling/energy_balance.h"
 
-#include "dd/elasticity/gauss.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -48,21 +46,23 @@ SymTensor compliance(const IsotropicMedium &m, const SymTensor &stress)
 }
 } // namespace
 
-double work_on_lines(const Network &network, const SegmentPointStress &stress, const std::vector<Vec3> &displacement)
+double work_on_lines(const Network &network, const SegmentPoints &points, const std::vector<SymTensor> &stress,
+                     const std::vector<Vec3> &displacement)
 {
-  const GaussRule rule = gauss_rule(static_cast<int>(n_segment_points));
   double work = 0;
-  std::size_t point = 0;
+  std::size_t i = 0;
   for (const SegmentIndex s : network.segments())
   {
     const Vec3 &du_start = displacement[network.start(s).value], &du_end = displacement[network.end(s).value];
     // The area swept by a straight segment between two positions is that of its mean line vector.
     const Vec3 line = network.direction(s) + 0.5 * (du_end - du_start);
-    for (std::size_t q = 0; q < n_segment_points; ++q, ++point)
+    const auto fractions = points.fractions(i), weights = points.weights(i);
+    for (std::size_t q = 0; q < fractions.size(); ++q)
     {
-      const Vec3 force = rule.weights[q] * contract(stress[point], network.burgers(s)).cross(line);
-      work += force.dot((1 - rule.points[q]) * du_start + rule.points[q] * du_end);
+      const Vec3 force = weights[q] * contract(stress[points.begin_of(i) + q], network.burgers(s)).cross(line);
+      work += force.dot((1 - fractions[q]) * du_start + fractions[q] * du_end);
     }
+    ++i;
   }
   return work;
 }

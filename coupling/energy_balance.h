@@ -2,15 +2,16 @@
 #pragma once
 
 #include "coupling/finite_grain.h"
-#include "dd/forces/nodal_forces.h"
+#include "dd/forces/segment_points.h"
 
 #include <vector>
 
 namespace ddfem::coupling
 {
-/// Work (MPa nm^3 = 1e-21 J) of a stress known at the Gauss points of the segments (segment_points()) while the nodes move by
-/// @p displacement (nm, by NodeIndex::value): int int (sigma . b) x dx . du with constant stress.
-double work_on_lines(const Network &network, const SegmentPointStress &stress, const std::vector<Vec3> &displacement);
+/// Work (MPa nm^3 = 1e-21 J) of a stress at points of the segments while the nodes move by @p displacement (nm, by
+/// NodeIndex::value): int int (sigma . b) x dx . du with constant stress.
+double work_on_lines(const Network &network, const SegmentPoints &points, const std::vector<SymTensor> &stress,
+                     const std::vector<Vec3> &displacement);
 
 /// Work (MPa nm^3) of nodal forces (MPa nm^2) that change from @p first to @p last along @p displacement (nm), trapezoid rule.
 double work_of_nodal_forces(const Network &network, const std::vector<Vec3> &first, const std::vector<Vec3> &last,
@@ -48,7 +49,8 @@ struct Energies
 /// the energy of the correction and of its interaction with the infinite field, the change of the infinite field's energy that
 /// crosses the surface, and the energy of the lines in an unbounded body. As K u^ = f + r is symmetric,
 ///   work - stored - dissipated = [ (f+r) . du~ + df . u^ ] - (work of the correction field on lines and swept area):
-/// by reciprocity the bracket is the work of sigma^ on the swept area. The balance closes if tractions, displacements by swept area,
+/// by reciprocity the bracket is the work of sigma^ on the swept area. The images of the lines near the surface count as part of
+/// the infinite field here. The balance closes if tractions, displacements by swept area,
 /// solver, reactions, recovered stress and nodal forces belong together. It does not test the forces of the infinite field
 /// against the energies of lines: that is a test of dd/.
 /// Periodic and infinite: the same with the applied stress in place of the correction; E = V sigma : S : sigma / 2.

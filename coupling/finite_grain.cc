@@ -2,7 +2,10 @@
 
 #include "coupling/convert.h"
 #include "coupling/dislocation_tractions.h"
+#include "coupling/grain_geometry.h"
+#include "coupling/image_planes.h"
 #include "coupling/input_error.h"
+#include "dd/common/parallel.h"
 #include "dd/elasticity/triangle_displacement.h"
 #include "dd/topology/growth.h"
 #include "fem/face_section.h"
@@ -10,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <tuple>
 
 namespace ddfem::coupling
@@ -28,20 +32,6 @@ dealii::types::boundary_id find_face(const FaceNames &names, const std::string &
   {
     throw InputError("Boundary conditions/" + entry + " = " + name + ": " + e.what());
   }
-}
-
-std::vector<PolyhedronShape::Facet> facets_of(const fem::Triangulation &mesh)
-{
-  std::vector<PolyhedronShape::Facet> facets;
-  for (const fem::BoundaryFacet &f : fem::boundary_facets(mesh))
-  {
-    PolyhedronShape::Facet facet;
-    for (const auto &v : f.vertices)
-      facet.vertices.push_back(to_vec3(v));
-    facet.face_id = static_cast<int>(f.boundary);
-    facets.push_back(facet);
-  }
-  return facets;
 }
 
 /// The plane that a face lies in, if it is perpendicular to a coordinate axis.
@@ -98,6 +88,7 @@ FiniteGrain::FiniteGrain(const GrainParameters &grain_parameters, const Isotropi
     throw InputError(std::string("Domain: ") + e.what());
   }
   find_platens(parameters);
+  find_image_planes();
   const bool clamped = parameters.clamped;
   problem = std::make_unique<fem::ElasticProblem>(
       *mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu},
@@ -105,6 +96,7 @@ FiniteGrain::FiniteGrain(const GrainParameters &grain_parameters, const Isotropi
                                               {platen_face, platen_motion->held_by_platen(clamped)}});
   reference_correction.resize(problem->boundary_points().size());
   infinite_displacement.resize(problem->boundary_points().size());
+  image_displacement.resize(problem->boundary_points().size());
   set_unit_response();
 }
 
@@ -149,14 +141,7 @@ std::uint64_t FiniteGrain::n_dofs() const
 
 void FiniteGrain::build_shape(const GrainParameters &p)
 {
-  const Vec3 origin(p.mesh.origin[0], p.mesh.origin[1], p.mesh.origin[2]);
-  const Vec3 size(p.mesh.size[0], p.mesh.size[1], p.mesh.size[2]);
-  if (p.mesh.shape == fem::MeshParameters::Shape::box)
-    grain_shape = std::make_unique<BoxShape>(origin, origin + size);
-  else if (p.mesh.shape == fem::MeshParameters::Shape::cylinder)
-    grain_shape = std::make_unique<CylinderShape>(origin, p.mesh.radius, p.mesh.height);
-  else
-    grain_shape = std::make_unique<PolyhedronShape>(facets_of(*mesh));
+  grain_shape = make_grain_shape(p.mesh, *mesh);
   for (const std::string &name : p.impenetrable_faces)
     grain_shape->set_face_kind(static_cast<int>(find_face(face_names, name, "Impenetrable faces")),
                                FaceKind::impenetrable);
@@ -164,20 +149,18 @@ void FiniteGrain::build_shape(const GrainParameters &p)
 
 void FiniteGrain::find_platens(const GrainParameters &p)
 {
-  const bool cylinder = p.mesh.shape == fem::MeshParameters::Shape::cylinder;
-  const bool box = p.mesh.shape == fem::MeshParameters::Shape::box;
-  const auto name_or =
-      [&](const std::string &given, const char *for_box, const char *for_cylinder, const std::string &entry)
+  const auto [usual_fixed, usual_platen] = usual_held_faces(p.mesh.shape);
+  const auto name_or = [](const std::string &given, const std::string &usual, const std::string &entry)
   {
-    if (given.empty() && !box && !cylinder)
+    if (given.empty() && usual.empty())
       throw InputError("Boundary conditions/" + entry + " = (empty): a mesh needs the name of a physical surface");
-    return given.empty() ? std::string(cylinder ? for_cylinder : for_box) : given;
+    return given.empty() ? usual : given;
   };
-  const std::string fixed = name_or(p.fixed_face, "z-", "bottom", "Fixed face");
-  const std::string platen = name_or(p.platen_face, "z+", "top", "Platen face");
+  const std::string fixed = name_or(p.fixed_face, usual_fixed, "Fixed face");
+  const std::string platen = name_or(p.platen_face, usual_platen, "Platen face");
   fixed_face = find_face(face_names, fixed, "Fixed face");
   platen_face = find_face(face_names, platen, "Platen face");
-  const auto facets = facets_of(*mesh);
+  const auto facets = boundary_polygons(*mesh);
   const AxisPlane low = plane_of_face(facets, static_cast<int>(fixed_face), fixed);
   const AxisPlane high = plane_of_face(facets, static_cast<int>(platen_face), platen);
   if (low.axis != high.axis || low.sign == high.sign)
@@ -186,6 +169,27 @@ void FiniteGrain::find_platens(const GrainParameters &p)
   platen_sign = high.sign;
   gauge_length = std::abs(high.position - low.position);
   describe_platen(facets);
+}
+
+void FiniteGrain::find_image_planes()
+{
+  const auto facets = boundary_polygons(*mesh);
+  const auto is_held = [](const std::array<bool, 3> &components)
+  { return components[0] || components[1] || components[2]; };
+  std::set<int> held;
+  if (is_held(platen_motion->held_by_fixed_face(parameters.clamped)))
+    held.insert(static_cast<int>(fixed_face));
+  if (is_held(platen_motion->held_by_platen(parameters.clamped)))
+    held.insert(static_cast<int>(platen_face));
+  planes_of_images = image_planes(facets, held);
+  image_settings.depth = parameters.image_depth * facet_size(facets, planes_of_images);
+}
+
+void FiniteGrain::update_images(const LineSystem &lines)
+{
+  images = SurfaceImages(lines, planes_of_images, image_settings);
+  const std::vector<Vec3> u = images.displacement(boundary_nodes());
+  std::transform(u.begin(), u.end(), image_displacement.begin(), to_tensor);
 }
 
 void FiniteGrain::describe_platen(const std::vector<PolyhedronShape::Facet> &facets)
@@ -220,7 +224,7 @@ std::vector<dealii::Tensor<1, 3>> FiniteGrain::prescribed_at_rest() const
 {
   std::vector<dealii::Tensor<1, 3>> values = reference_correction;
   for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] -= infinite_displacement[i];
+    values[i] -= infinite_displacement[i] + image_displacement[i];
   return values;
 }
 
@@ -237,9 +241,12 @@ void FiniteGrain::set_reference(const Network &network, const LineSystem &lines)
 void FiniteGrain::relax(const LineSystem &lines)
 {
   fem::ElasticProblem free_grain(*mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu}, {});
-  free_grain.set_tractions(DislocationTractions(lines));
+  update_images(lines);
+  free_grain.set_tractions(DislocationTractions(lines, &images));
   free_grain.solve(std::vector<dealii::Tensor<1, 3>>(free_grain.boundary_points().size()));
   reference_correction = free_grain.boundary_displacements();
+  for (std::size_t i = 0; i < reference_correction.size(); ++i)
+    reference_correction[i] += image_displacement[i];
 }
 
 void FiniteGrain::add_swept(const SweptArea &area)
@@ -260,7 +267,8 @@ void FiniteGrain::add_swept(const SweptArea &area)
 GrainSolution FiniteGrain::solve_at_rest(const LineSystem &lines)
 {
   GrainSolution solution;
-  solution.tractions = problem->set_tractions(DislocationTractions(lines));
+  update_images(lines);
+  solution.tractions = problem->set_tractions(DislocationTractions(lines, &images));
   const double diameter = grain_shape->diameter();
   std::tie(solution.force_imbalance, solution.moment_imbalance) =
       imbalance(solution.tractions, medium.mu * medium.a * diameter, diameter);
@@ -295,21 +303,60 @@ GrainSolution FiniteGrain::solve(const LineSystem &lines, const double q)
 
 BoundaryState FiniteGrain::boundary_state() const
 {
-  return {problem->boundary_loads(), problem->boundary_reactions(), problem->boundary_displacements(),
-          infinite_displacement};
+  std::vector<dealii::Tensor<1, 3>> analytic = infinite_displacement;
+  for (std::size_t i = 0; i < analytic.size(); ++i)
+    analytic[i] += image_displacement[i];
+  return {problem->boundary_loads(), problem->boundary_reactions(), problem->boundary_displacements(), analytic};
 }
 
-std::vector<SymTensor> FiniteGrain::correction_stress(const std::vector<Vec3> &points) const
+std::vector<SymTensor> FiniteGrain::stress_of_elements(const std::vector<Vec3> &points) const
 {
   std::vector<dealii::Point<3>> positions;
   positions.reserve(points.size());
-  for (const Vec3 &x : points)
-    positions.push_back(to_point(x));
+  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_point);
   std::vector<SymTensor> result;
   result.reserve(points.size());
   for (const auto &s : problem->stress_at(positions))
     result.push_back(to_sym_tensor(s));
   return result;
+}
+
+void FiniteGrain::add_images(const std::vector<Vec3> &points, std::vector<SymTensor> &stress) const
+{
+  if (images.empty())
+    return;
+  std::vector<SymTensor> of_images(points.size());
+  const IndexRange owned = owned_range(points.size(), communicator);
+  const auto mine = images.stress(std::span(points).subspan(owned.begin, owned.end - owned.begin));
+  std::copy(mine.begin(), mine.end(), of_images.begin() + static_cast<std::ptrdiff_t>(owned.begin));
+  gather_owned(of_images, communicator);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    stress[k] += of_images[k];
+}
+
+std::vector<SymTensor> FiniteGrain::correction_stress(const std::vector<Vec3> &points) const
+{
+  std::vector<SymTensor> stress = stress_of_elements(points);
+  add_images(points, stress);
+  return stress;
+}
+
+SegmentField FiniteGrain::correction_at_segments(const Network &network) const
+{
+  SegmentPoints::SmoothLength smooth_length;
+  if (image_settings.depth > 0)
+    smooth_length = [&](const Vec3 &x)
+    {
+      double depth = image_settings.depth;
+      for (const ImagePlane &p : planes_of_images)
+        depth = std::min(depth, (p.point - x).dot(p.outward));
+      return std::max(depth, 0.0) + medium.a;
+    };
+  SegmentField field{SegmentPoints(network, smooth_length), {}, {}};
+  field.without_images = stress_of_elements(field.points.positions());
+  field.stress = field.without_images;
+  add_images(field.points.positions(), field.stress);
+  return field;
 }
 
 std::vector<Vec3> FiniteGrain::boundary_nodes() const
@@ -325,16 +372,16 @@ std::vector<Vec3> FiniteGrain::boundary_displacement() const
   std::vector<Vec3> u;
   const auto correction = problem->boundary_displacements();
   for (std::size_t i = 0; i < correction.size(); ++i)
-    u.push_back(to_vec3(correction[i] + infinite_displacement[i]));
+    u.push_back(to_vec3(correction[i] + image_displacement[i] + infinite_displacement[i]));
   return u;
 }
 
 std::string FiniteGrain::write(const std::string &directory, const std::string &name) const
 {
   // Displacements are counted from the reference state, like the prescribed ones.
-  std::vector<dealii::Tensor<1, 3>> extra(infinite_displacement.size());
+  std::vector<dealii::Tensor<1, 3>> extra = image_displacement;
   for (std::size_t i = 0; i < extra.size(); ++i)
-    extra[i] = infinite_displacement[i] - reference_correction[i];
+    extra[i] += infinite_displacement[i] - reference_correction[i];
   return problem->write_surface(directory, name, extra);
 }
 } // namespace ddfem::coupling

@@ -4,6 +4,8 @@
 #include "coupling/parameters.h"
 #include "coupling/platen.h"
 #include "dd/forces/line_system.h"
+#include "dd/forces/segment_points.h"
+#include "dd/forces/surface_images.h"
 #include "dd/geometry/grain_shape.h"
 #include "dd/topology/swept_area.h"
 #include "fem/elastic_problem.h"
@@ -36,10 +38,10 @@ struct GrainSolution
 /// Vectors over the boundary nodes of this rank that the energies of the grain are made of.
 struct BoundaryState
 {
-  std::vector<dealii::Tensor<1, 3>> load;       ///< f = -int N (sigma~ n) dS, MPa nm^2
+  std::vector<dealii::Tensor<1, 3>> load;       ///< f = -int N (sigma~ n) dS, images included, MPa nm^2
   std::vector<dealii::Tensor<1, 3>> reaction;   ///< of the held faces, total field, MPa nm^2
   std::vector<dealii::Tensor<1, 3>> correction; ///< u^, nm
-  std::vector<dealii::Tensor<1, 3>> infinite;   ///< u~ since the reference, nm
+  std::vector<dealii::Tensor<1, 3>> infinite;   ///< u~ since the reference, and images, nm
 };
 
 /// Mesh, boundary conditions and correction field of a finite grain. Collective over the communicator. Loading axis: the
@@ -75,9 +77,14 @@ public:
   GrainSolution solve(const LineSystem &lines, double q);
   BoundaryState boundary_state() const;
   MPI_Comm mpi_communicator() const { return communicator; }
-  /// Correction stress at points inside the grain, MPa; the same bits on all ranks.
+  /// Correction stress at points inside the grain, MPa: finite elements and images of the last solve; the same bits on all
+  /// ranks.
   std::vector<SymTensor> correction_stress(const std::vector<Vec3> &points) const;
-  /// u~ + u^ at the boundary nodes of this rank, and these nodes, nm.
+  /// The part of the finite elements in it.
+  std::vector<SymTensor> stress_of_elements(const std::vector<Vec3> &points) const;
+  /// All of it at the segments of a network, at points that are dense enough for the images near the surface.
+  SegmentField correction_at_segments(const Network &network) const;
+  /// u~ + u^ at the boundary nodes of this rank since the reference state, and these nodes, nm.
   std::vector<Vec3> boundary_displacement() const;
   std::vector<Vec3> boundary_nodes() const;
   /// Writes the deformed surface; returns the file written.
@@ -91,6 +98,9 @@ private:
   void set_unit_response();
   std::vector<dealii::Tensor<1, 3>> prescribed_at_rest() const;
   double platen_load() const;
+  void find_image_planes();
+  void update_images(const LineSystem &lines);
+  void add_images(const std::vector<Vec3> &points, std::vector<SymTensor> &stress) const;
 
   GrainParameters parameters;
   IsotropicMedium medium;
@@ -109,7 +119,11 @@ private:
   std::vector<double> unit_response,
       at_rest;                ///< unknowns of this rank: of q = 1 without dislocations; of the last solve at rest
   double load_per_motion = 0; ///< Q per q
-  std::vector<dealii::Tensor<1, 3>> reference_correction;  ///< u^(0) at the boundary nodes
+  std::vector<ImagePlane> planes_of_images;
+  ImageSettings image_settings;
+  SurfaceImages images;                                    ///< of the lines of the last solve
+  std::vector<dealii::Tensor<1, 3>> image_displacement;    ///< of these, at the boundary nodes, nm
+  std::vector<dealii::Tensor<1, 3>> reference_correction;  ///< u^(0), images included, at the boundary nodes
   std::vector<dealii::Tensor<1, 3>> infinite_displacement; ///< u~ since the reference, at the boundary nodes
 };
 

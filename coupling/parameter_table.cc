@@ -98,36 +98,54 @@ void add_mobility(std::vector<ParameterEntry> &t)
 void add_domain(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Domain";
+  t.push_back({s, "Shape", "box", one_of("box|cylinder|pillar|cantilever|mesh"), "",
+               "Finite grain: box, cylinder (axis z), pillar (axis z, tapered, on a square base with a fillet), "
+               "cantilever (beam "
+               "along x that grows from the middle of a root block) or hexahedral gmsh mesh, convex or re-entrant. "
+               "Periodic cell and infinite body: box; the latter "
+               "uses its volume only to turn swept area into plastic strain."});
   t.push_back(
-      {s, "Shape", "box", one_of("box|cylinder|mesh"), "",
-       "Finite grain: box, cylinder (axis z) or hexahedral gmsh mesh. Periodic cell and infinite body: box; the latter "
-       "uses its volume only to turn swept area into plastic strain."});
-  t.push_back({s, "Origin", "0 0 0", vector_of(3), "m",
-               "Lowest corner of the box, centre of the bottom disc of the cylinder, or shift of the mesh."});
-  t.push_back({s, "Size", "1e-6 1e-6 1e-6", vector_of(3), "m", "Edge lengths of the box."});
-  t.push_back({s, "Radius", "0.5e-6", positive(), "m", "Radius of the cylinder."});
-  t.push_back({s, "Height", "2e-6", positive(), "m", "Height of the cylinder."});
+      {s, "Origin", "0 0 0", vector_of(3), "m",
+       "Lowest corner of the box or of the cantilever's root block, centre of the bottom of the cylinder or of the "
+       "pillar's base, or shift of the mesh."});
+  t.push_back(
+      {s, "Size", "1e-6 1e-6 1e-6", vector_of(3), "m", "Edge lengths of the box, or of the beam of a cantilever."});
+  t.push_back({s, "Radius", "0.5e-6", positive(), "m", "Radius of the cylinder; of the pillar at its top."});
+  t.push_back({s, "Height", "2e-6", positive(), "m", "Height of the cylinder; of the pillar above its base."});
+  t.push_back({s, "Taper angle", "0", between(0, 44), "degrees",
+               "Angle between the side and the axis of the pillar, which is narrowest at its top."});
+  t.push_back(
+      {s, "Fillet radius", "0", not_negative(), "m", "Radius of the fillet between pillar and base; 0: a sharp edge."});
+  t.push_back({s, "Base width", "3e-6", positive(), "m", "Edge of the square base of the pillar."});
+  t.push_back({s, "Base height", "1e-6", positive(), "m", "Height of the base of the pillar."});
+  t.push_back({s, "Root block", "1e-6 3e-6 3e-6", vector_of(3), "m",
+               "Edge lengths of the cantilever's root block, wider than the beam along y and z."});
   t.push_back(
       {s, "Mesh file", "", words(), "", "Hexahedral gmsh .msh file (format 2.2 or 4.1) with physical surfaces."});
   t.push_back({s, "Mesh unit", "1", positive(), "m", "Length of one coordinate unit of the mesh file."});
-  t.push_back({s, "Subdivisions", "6 6 12", std::make_shared<Patterns::List>(Patterns::Integer(1, 1000), 3, 3, " "), "",
-               "Elements along x, y, z (box); across the diameter (first) and along the axis (third) of a cylinder."});
+  t.push_back(
+      {s, "Subdivisions", "6 6 12", std::make_shared<Patterns::List>(Patterns::Integer(1, 1000), 3, 3, " "), "",
+       "Elements along x, y, z (box, beam of a cantilever); across the diameter (first), through the base of a pillar "
+       "(second) and along the axis (third) of a cylinder or pillar."});
   t.push_back({s, "Refinements", "0", count(0, 6), "", "Uniform refinements of the mesh."});
   t.push_back({s, "Element degree", "2", count(1, 2), "", "Polynomial degree of the elements: 1 or 2."});
   t.push_back(
       {s, "Elastic tolerance", "1e-7", between(1e-14, 1e-2), "", "Residual of the FEM solve relative to its load."});
   t.push_back({s, "Traction tolerance", "1e-6", between(1e-12, 1e-2), "",
                "Relative error aimed at in the integrals of the infinite-body tractions over the boundary."});
+  t.push_back({s, "Image depth", "4", not_negative(), "element edges",
+               "Segments nearer than this many element edges to a flat free face get analytic images; 0: none. "
+               "Faces must have the whole grain on one side and must not be held."});
 }
 
 void add_boundary(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Boundary conditions";
-  t.push_back(
-      {s, "Fixed face", "", words(), "",
-       "Face held in place: x-, x+, y-, y+, z-, z+ (box), bottom, top (cylinder), or the name of a physical surface. "
-       "Empty: z- or bottom."});
-  t.push_back({s, "Platen face", "", words(), "", "Face that the platen moves; empty: z+ or top."});
+  t.push_back({s, "Fixed face", "", words(), "",
+               "Face held in place: x-, x+, y-, y+, z-, z+ (box), bottom, top (cylinder, pillar), root, end "
+               "(cantilever), or the "
+               "name of a physical surface. Empty: z-, bottom or root."});
+  t.push_back({s, "Platen face", "", words(), "", "Face that the platen moves; empty: z+, top or end."});
   t.push_back(
       {s, "Platen contact", "clamped", one_of("clamped|frictionless"), "",
        "Clamped: all displacements of the two faces prescribed; frictionless: only those that drive the platen (see "
@@ -145,8 +163,11 @@ void add_boundary(std::vector<ParameterEntry> &t)
        "platen face; in twist those of the outermost point, in bending of the outermost fibre."});
   t.push_back({s, "Transverse axis", "x", one_of("x|y|z"), "",
                "Direction across the axis of a transverse motion, or across which the strain of a bent grain varies."});
-  t.push_back({s, "Impenetrable faces", "", words(), "",
-               "Faces at which lines stop, separated by ';'. Lines leave through all others."});
+  t.push_back(
+      {s, "Impenetrable faces", "", words(), "",
+       "Faces at which lines stop, separated by ';'. Lines leave through all others. Besides those named above, a "
+       "cylinder has the face side, a pillar side (with the fillet), base-top, base-side, and a cantilever beam-y-, "
+       "beam-y+, beam-z-, beam-z+, block."});
   t.push_back(
       {s, "Reference state", "relaxed", one_of("relaxed|perfect crystal"), "",
        "Prescribed displacements are counted from the grain relaxed with all surfaces traction-free at t = 0, or from "
@@ -216,6 +237,10 @@ void add_microstructure(std::vector<ParameterEntry> &t)
        "the circle of the radius. Example: 1 1 1 / -1 0 1 / 0 0 5e-7 / 1e-7 / 24."});
   t.push_back({s, "Network file", "", words(), "",
                "ParaDiS .data file (version 4), lengths in Burgers vectors; added to the sources and loops."});
+  t.push_back(
+      {s, "Cut at surface", "false", yes_no(), "",
+       "Finite grain: cut off what sources, loops and lines of the file reach out of the grain; otherwise nodes "
+       "outside are an error."});
 }
 
 void add_discretisation(std::vector<ParameterEntry> &t)

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <sstream>
 
 namespace ddfem::coupling
@@ -131,9 +132,11 @@ void read_mesh(const InputDeck &deck, Parameters &p)
 {
   auto &mesh = p.grain.mesh;
   const std::string shape = deck.text("Domain/Shape");
-  mesh.shape = shape == "box"        ? fem::MeshParameters::Shape::box
-               : shape == "cylinder" ? fem::MeshParameters::Shape::cylinder
-                                     : fem::MeshParameters::Shape::gmsh;
+  mesh.shape = shape == "box"          ? fem::MeshParameters::Shape::box
+               : shape == "cylinder"   ? fem::MeshParameters::Shape::cylinder
+               : shape == "pillar"     ? fem::MeshParameters::Shape::pillar
+               : shape == "cantilever" ? fem::MeshParameters::Shape::cantilever
+                                       : fem::MeshParameters::Shape::gmsh;
   const Vec3 origin = to_vec3(deck.numbers("Domain/Origin", 3)) * units::metre;
   const Vec3 size = to_vec3(deck.numbers("Domain/Size", 3)) * units::metre;
   if ((size.array() <= 0).any())
@@ -142,6 +145,16 @@ void read_mesh(const InputDeck &deck, Parameters &p)
   mesh.size = {size[0], size[1], size[2]};
   mesh.radius = deck.number("Domain/Radius") * units::metre;
   mesh.height = deck.number("Domain/Height") * units::metre;
+  mesh.pillar = {mesh.radius,
+                 mesh.height,
+                 deck.number("Domain/Taper angle") * std::numbers::pi / 180,
+                 deck.number("Domain/Fillet radius") * units::metre,
+                 deck.number("Domain/Base width") * units::metre,
+                 deck.number("Domain/Base height") * units::metre};
+  const Vec3 block = to_vec3(deck.numbers("Domain/Root block", 3)) * units::metre;
+  if ((block.array() <= 0).any())
+    deck.reject("Domain/Root block", "edge lengths must be positive");
+  mesh.block = {block[0], block[1], block[2]};
   const auto subdivisions = deck.numbers("Domain/Subdivisions", 3);
   for (std::size_t c = 0; c < 3; ++c)
     mesh.subdivisions[c] = static_cast<unsigned>(subdivisions[c]);
@@ -165,6 +178,7 @@ void read_grain(const InputDeck &deck, Parameters &p)
   p.grain.elasticity.degree = deck.integer("Domain/Element degree");
   p.grain.elasticity.relative_tolerance = deck.number("Domain/Elastic tolerance");
   p.grain.elasticity.traction_tolerance = deck.number("Domain/Traction tolerance");
+  p.grain.image_depth = deck.number("Domain/Image depth");
   p.grain.fixed_face = deck.text("Boundary conditions/Fixed face");
   p.grain.platen_face = deck.text("Boundary conditions/Platen face");
   p.grain.clamped = deck.text("Boundary conditions/Platen contact") == "clamped";
@@ -361,6 +375,7 @@ void read_microstructure(const InputDeck &deck, Parameters &p)
   const SlipSystems systems = p.slip_systems();
   read_sources(deck, systems, p);
   read_loops(deck, systems, p);
+  p.cut_at_surface = deck.flag("Microstructure/Cut at surface");
   if (const std::string file = deck.text("Microstructure/Network file"); !file.empty())
   {
     p.network_file = (std::filesystem::path(deck.directory()) / file).string();

@@ -46,6 +46,7 @@ struct GrainParameters
   std::vector<std::string> impenetrable_faces;
   ReferenceState reference = ReferenceState::relaxed;
   RayDirection ray_direction = RayDirection::normal;
+  double image_depth = 4; ///< lines nearer than this many elements to a flat free face get analytic images
 };
 
 enum class LoadingType
@@ -96,7 +97,8 @@ struct Parameters
   LoadingParameters loading;
   std::vector<FrankReadSource> sources;
   std::vector<PolygonLoop> loops;
-  std::string network_file; ///< absolute; empty: none
+  std::string network_file;    ///< absolute; empty: none
+  bool cut_at_surface = false; ///< what the initial lines reach out of the grain
   TopologySettings topology;
   double core_cutoff_radius = 0; ///< nm
   double pair_tolerance = 0;

@@ -1,6 +1,7 @@
 #include "coupling/simulation.h"
 
 #include "coupling/input_error.h"
+#include "dd/microstructure/clip.h"
 #include "dd/mobility/linear_glide.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/growth.h"
@@ -52,6 +53,8 @@ Simulation::Simulation(const Parameters &p, MPI_Comm comm)
   if (p.mode == Mode::finite)
   {
     finite_grain = std::make_unique<FiniteGrain>(p.grain, p.medium, communicator);
+    if (p.cut_at_surface)
+      clip_to_grain(dislocations, finite_grain->shape(), 0.1 * p.topology.min_segment);
     fit_into_grain(dislocations, finite_grain->shape(), p.topology.min_segment);
     initial_open_lines = open_lines(dislocations, &finite_grain->shape(), p.grain.ray_direction);
     if (p.grain.reference == ReferenceState::perfect_crystal)
@@ -128,7 +131,7 @@ void Simulation::update_correction(const LineWork &lines)
   solve_lines();
   update_loading(lines);
   if (finite_grain)
-    correction = finite_grain->correction_stress(segment_points(dislocations));
+    correction = finite_grain->correction_at_segments(dislocations);
 }
 
 void Simulation::start()
@@ -139,7 +142,7 @@ void Simulation::start()
   solve_lines();
   start_loading();
   if (finite_grain)
-    correction = finite_grain->correction_stress(segment_points(dislocations));
+    correction = finite_grain->correction_at_segments(dislocations);
 }
 
 IntegratorStep Simulation::move_lines()
@@ -186,7 +189,7 @@ void Simulation::change_topology(TopologyContext &context)
               [&](const Network &n)
               {
                 if (finite_grain)
-                  correction = finite_grain->correction_stress(segment_points(n));
+                  correction = finite_grain->correction_at_segments(n);
                 return compute_nodal_forces(n, parameters.force_settings(), environment(), communicator);
               });
   remesh(context);

@@ -96,7 +96,7 @@ private:
   OpenLines initial_open_lines;
   ProductPlane product_plane;
   StabilisedRungeKutta integrator;
-  SegmentPointStress correction;
+  SegmentField correction; ///< of the last solve, at the segments
   GrainSolution solution;
   Loading loading;
   EnergyBalance energy;

@@ -84,18 +84,20 @@ LineWork Simulation::work_of_step(const IntegratorStep &step) const
   LineWork work;
   work.total = work_of_nodal_forces(dislocations, forces_at_start, forces_at_end, step.displacement);
   if (finite_grain)
-    work.external = work_on_lines(dislocations, correction, step.displacement);
+    work.external = work_on_lines(dislocations, correction.points, correction.without_images, step.displacement);
   else
-    work.external =
-        work_on_lines(dislocations, SegmentPointStress(n_segment_points * dislocations.n_segments(), applied_stress()),
-                      step.displacement);
+  {
+    const SegmentPoints points(dislocations);
+    const std::vector<SymTensor> stress(points.positions().size(), applied_stress());
+    work.external = work_on_lines(dislocations, points, stress, step.displacement);
+  }
   return work;
 }
 /// Of the correction or applied stress that the lines have moved in, on all that was swept.
 double Simulation::work_on_swept_area() const
 {
   const std::vector<Vec3> centres = swept_centres(swept, finite_grain ? &finite_grain->shape() : nullptr);
-  return work_on_area(swept, finite_grain ? finite_grain->correction_stress(centres)
+  return work_on_area(swept, finite_grain ? finite_grain->stress_of_elements(centres)
                                           : std::vector<SymTensor>(centres.size(), applied_stress()));
 }
 } // namespace ddfem::coupling

@@ -1,30 +1,25 @@
 #include "fem/boundary_load.h"
 
-#include "fem/lagrange.h"
-
 #include <deal.II/base/quadrature_lib.h>
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <limits>
 
 namespace ddfem::fem
 {
 namespace
 {
-/// A piece is halved when it would need more Gauss points than this in a direction. Fewer points on smaller pieces cost
-/// more near a line, more points on larger ones cost more where only a corner of the piece is near it.
-constexpr unsigned most_points = 12;
 /// Halvings in a direction: a millionth of a face is far below any core radius.
 constexpr unsigned deepest = 20;
 
-/// Gauss points and weights on the unit interval for 1 ... most_points points.
-const std::vector<dealii::QGauss<1>> &gauss_rules()
+/// Gauss points and weights on the unit interval for 1 ... n_rules points.
+const std::vector<dealii::QGauss<1>> &gauss_rules(unsigned n_rules)
 {
-  static const std::vector<dealii::QGauss<1>> rules = []
+  static const std::vector<dealii::QGauss<1>> rules = [n_rules]
   {
     std::vector<dealii::QGauss<1>> list;
-    for (unsigned n = 1; n <= most_points; ++n)
+    for (unsigned n = 1; n <= n_rules; ++n)
     {
       list.emplace_back(n);
     }
@@ -34,10 +29,26 @@ const std::vector<dealii::QGauss<1>> &gauss_rules()
 }
 } // namespace
 
+/// Buffers of a thread.
+struct BoundaryLoad::Workspace
+{
+  std::array<std::vector<unsigned>, (most_points + 1) * (most_points + 1)> groups; // sources by the orders they need
+  std::vector<double> lengths;
+  std::vector<Sample> samples;
+  std::vector<dealii::Point<3>> points;
+  std::vector<dealii::SymmetricTensor<2, 3>> stresses;
+};
+
 BoundaryLoad::BoundaryLoad(const NodalGrid &nodal_grid, const dealii::Point<3> &moment_centre,
                            double relative_tolerance)
-    : grid(nodal_grid), centre(moment_centre), tolerance(relative_tolerance)
+    : grid(nodal_grid), centre(moment_centre)
 {
+  for (unsigned n = 0; n <= most_points; ++n)
+  {
+    // Shape functions and area element of the whole face are integrated whatever the field.
+    least_ratio[n] = n <= grid.degree ? std::numeric_limits<double>::infinity()
+                                      : std::sinh(-std::log(relative_tolerance) / (2. * (n - 1.)));
+  }
   for (const auto &face : grid.faces)
   {
     nodes_of_face.emplace_back();
@@ -97,35 +108,65 @@ void BoundaryLoad::measure(Piece &piece) const
 
 unsigned BoundaryLoad::required_order(double length, double distance) const
 {
-  // Shape functions and area element of the whole face are integrated whatever the field.
-  const unsigned least = grid.degree + 1;
-  if (!(distance > 0.))
+  unsigned n = grid.degree + 1;
+  while (n <= most_points && !(2. * distance >= least_ratio[n] * length))
   {
-    return most_points + 1;
+    ++n;
   }
-  const double ratio = 2. * distance / length;
-  const double log_rho = std::asinh(ratio);
-  const double n = std::ceil(-std::log(tolerance) / (2. * log_rho)) + 1.;
-  return n > most_points ? most_points + 1 : std::max(least, static_cast<unsigned>(n));
+  return n;
 }
 
-bool BoundaryLoad::halve(Piece piece, double distance, std::vector<Piece> &next, std::vector<Piece> &done) const
+std::array<unsigned, 2> BoundaryLoad::divisions(const Piece &piece, double distance) const
 {
   std::array<unsigned, 2> parts = {1, 1};
-  bool resolved = true;
   for (unsigned d = 0; d < 2; ++d)
   {
-    const unsigned order = required_order(piece.length[d], distance);
-    piece.order[d] = std::min(order, most_points);
     // The longer side is halved first, so that pieces become compact: the bound is for the ball around the piece.
     const bool is_long = 1.5 * piece.length[d] > piece.length[1 - d] || piece.depth[1 - d] == deepest;
-    parts[d] = order > most_points && is_long && piece.depth[d] < deepest ? 2 : 1;
-    resolved = resolved && order <= most_points;
+    const bool too_long = required_order(piece.length[d], distance) > most_points;
+    parts[d] = too_long && is_long && piece.depth[d] < deepest ? 2 : 1;
   }
+  return parts;
+}
+
+void BoundaryLoad::descend(const TractionField &field, Piece piece, const std::vector<unsigned> &sources,
+                           FaceIntegral &result, Workspace &work) const
+{
+  measure(piece);
+  work.lengths.assign(sources.size(), 0.);
+  field.smooth_lengths(piece.centre, piece.radius, sources, work.lengths);
+  std::vector<unsigned> rest;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (auto &group : work.groups)
+  {
+    group.clear();
+  }
+  for (std::size_t i = 0; i < sources.size(); ++i)
+  {
+    const double distance = work.lengths[i];
+    const Orders orders = {required_order(piece.length[0], distance), required_order(piece.length[1], distance)};
+    if (std::max(orders[0], orders[1]) > most_points)
+    {
+      rest.push_back(sources[i]);
+      nearest = std::min(nearest, distance > 0. ? distance : 0.);
+      continue;
+    }
+    work.groups[orders[0] * (most_points + 1) + orders[1]].push_back(sources[i]);
+  }
+  for (unsigned k = 0; k < work.groups.size(); ++k)
+  {
+    integrate(field, piece, {k / (most_points + 1), k % (most_points + 1)}, work.groups[k], result, work);
+  }
+  if (rest.empty())
+  {
+    return;
+  }
+  const auto parts = divisions(piece, nearest);
   if (parts[0] * parts[1] == 1)
   {
-    done.push_back(piece);
-    return resolved;
+    ++result.n_unresolved;
+    integrate(field, piece, {most_points, most_points}, rest, result, work);
+    return;
   }
   for (unsigned k = 0; k < parts[0] * parts[1]; ++k)
   {
@@ -137,46 +178,14 @@ bool BoundaryLoad::halve(Piece piece, double distance, std::vector<Piece> &next,
       part.low[d] += index[d] * part.size[d];
       part.depth[d] += parts[d] - 1;
     }
-    next.push_back(part);
+    descend(field, part, rest, result, work);
   }
-  return true;
 }
 
-std::vector<BoundaryLoad::Piece> BoundaryLoad::divide(const TractionField &field, std::uint64_t &n_unresolved) const
+void BoundaryLoad::append_points(const Piece &piece, const Orders &orders, std::vector<Sample> &samples) const
 {
-  std::vector<Piece> active, next, done;
-  for (unsigned face = 0; face < grid.faces.size(); ++face)
-  {
-    active.push_back({face, {0., 0.}, {1., 1.}, {0, 0}, {0, 0}, {}, 0., {}});
-  }
-  std::vector<dealii::Point<3>> centres;
-  std::vector<double> radii, lengths;
-  while (!active.empty())
-  {
-    centres.clear();
-    radii.clear();
-    for (Piece &piece : active)
-    {
-      measure(piece);
-      centres.push_back(piece.centre);
-      radii.push_back(piece.radius);
-    }
-    lengths.assign(active.size(), 0.);
-    field.smooth_lengths(centres, radii, lengths);
-    next.clear();
-    for (std::size_t i = 0; i < active.size(); ++i)
-    {
-      n_unresolved += halve(active[i], lengths[i], next, done) ? 0 : 1;
-    }
-    active.swap(next);
-  }
-  return done;
-}
-
-void BoundaryLoad::append_points(const Piece &piece, std::vector<Sample> &samples) const
-{
-  const auto &rule_s = gauss_rules()[piece.order[0] - 1];
-  const auto &rule_t = gauss_rules()[piece.order[1] - 1];
+  const auto &rule_s = gauss_rules(most_points)[orders[0] - 1];
+  const auto &rule_t = gauss_rules(most_points)[orders[1] - 1];
   for (unsigned j = 0; j < rule_t.size(); ++j)
   {
     for (unsigned i = 0; i < rule_s.size(); ++i)
@@ -188,48 +197,97 @@ void BoundaryLoad::append_points(const Piece &piece, std::vector<Sample> &sample
   }
 }
 
-TractionSummary BoundaryLoad::add_field(const TractionField &field, NodalVector &load) const
+void BoundaryLoad::integrate(const TractionField &field, const Piece &piece, const Orders &orders,
+                             const std::vector<unsigned> &sources, FaceIntegral &result, Workspace &work) const
 {
-  TractionSummary summary;
-  const std::vector<Piece> pieces = divide(field, summary.n_unresolved);
-  std::vector<Sample> samples;
-  std::vector<unsigned> faces;
-  for (const Piece &piece : pieces)
+  if (sources.empty())
   {
-    append_points(piece, samples);
-    faces.resize(samples.size(), piece.face);
+    return;
   }
-  std::vector<dealii::Point<3>> points;
-  points.reserve(samples.size());
-  for (const Sample &s : samples)
+  work.samples.clear();
+  append_points(piece, orders, work.samples);
+  work.points.clear();
+  for (const Sample &s : work.samples)
   {
-    points.push_back(s.position);
+    work.points.push_back(s.position);
   }
-  std::vector<dealii::SymmetricTensor<2, 3>> stresses(points.size());
-  field.stress(points, stresses);
-  NodalVector integral(grid.partitioner);
-  for (std::size_t i = 0; i < samples.size(); ++i)
+  work.stresses.assign(work.points.size(), {});
+  field.add_stress(sources, work.points, work.stresses);
+  const std::size_t n_nodes = nodes_of_face[piece.face].size();
+  for (std::size_t i = 0; i < work.samples.size(); ++i)
   {
-    const auto force = stresses[i] * samples[i].area;
-    const auto arm = samples[i].position - centre;
-    summary.force += force;
-    summary.moment += cross_product_3d(arm, force);
-    summary.absolute_force += force.norm();
-    summary.absolute_moment += arm.norm() * force.norm();
-    const auto &nodes = nodes_of_face[faces[i]];
-    for (unsigned a = 0; a < nodes.size(); ++a)
+    const Sample &s = work.samples[i];
+    const auto force = work.stresses[i] * s.area;
+    result.force += force;
+    result.moment += cross_product_3d(s.position - centre, force);
+    for (std::size_t a = 0; a < n_nodes; ++a)
     {
-      for (unsigned c = 0; c < 3; ++c)
-      {
-        integral.local_element(3 * nodes[a] + c) -= samples[i].values[a] * force[c];
-      }
+      result.nodal[a] += s.values[a] * force;
     }
   }
-  integral.compress(dealii::VectorOperation::add);
-  load += integral;
-  summary.n_points = samples.size();
+  result.n_points += work.samples.size();
+  result.n_evaluations += work.samples.size() * sources.size();
+}
+
+BoundaryLoad::FaceIntegral BoundaryLoad::integrate_face(const TractionField &field, unsigned face,
+                                                        Workspace &work) const
+{
+  std::vector<unsigned> sources;
+  for (unsigned source = 0; source < field.n_sources(); ++source)
+  {
+    if (!field.vanishes_on(source, grid.faces[face].boundary))
+    {
+      sources.push_back(source);
+    }
+  }
+  FaceIntegral result;
+  descend(field, {face, {0., 0.}, {1., 1.}, {0, 0}, {}, 0., {}}, sources, result, work);
+  return result;
+}
+
+TractionSummary BoundaryLoad::add_field(const TractionField &field, NodalVector &load) const
+{
+  std::vector<FaceIntegral> integrals(grid.faces.size());
+#pragma omp parallel
+  {
+    Workspace work;
+#pragma omp for schedule(dynamic)
+    for (unsigned face = 0; face < integrals.size(); ++face)
+    {
+      integrals[face] = integrate_face(field, face, work);
+    }
+  }
+  TractionSummary summary;
+  NodalVector sum(grid.partitioner);
+  for (unsigned face = 0; face < integrals.size(); ++face)
+  {
+    add_face(face, integrals[face], summary, sum);
+  }
+  sum.compress(dealii::VectorOperation::add);
+  load -= sum;
   reduce(summary);
   return summary;
+}
+
+void BoundaryLoad::add_face(unsigned face, const FaceIntegral &integral, TractionSummary &summary,
+                            NodalVector &load) const
+{
+  summary.force += integral.force;
+  summary.moment += integral.moment;
+  summary.n_points += integral.n_points;
+  summary.n_evaluations += integral.n_evaluations;
+  summary.n_unresolved += integral.n_unresolved;
+  const auto &nodes = nodes_of_face[face];
+  for (unsigned a = 0; a < nodes.size(); ++a)
+  {
+    const double size = integral.nodal[a].norm();
+    summary.absolute_force += size;
+    summary.absolute_moment += size * grid.positions[nodes[a]].distance(centre);
+    for (unsigned c = 0; c < 3; ++c)
+    {
+      load.local_element(3 * nodes[a] + c) += integral.nodal[a][c];
+    }
+  }
 }
 
 void BoundaryLoad::reduce(TractionSummary &summary) const
@@ -242,9 +300,9 @@ void BoundaryLoad::reduce(TractionSummary &summary) const
   }
   sums[6] = summary.absolute_force;
   sums[7] = summary.absolute_moment;
-  std::array<std::uint64_t, 2> counts = {summary.n_points, summary.n_unresolved};
+  std::array<std::uint64_t, 3> counts = {summary.n_points, summary.n_evaluations, summary.n_unresolved};
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 8, MPI_DOUBLE, MPI_SUM, grid.communicator);
-  MPI_Allreduce(MPI_IN_PLACE, counts.data(), 2, MPI_UINT64_T, MPI_SUM, grid.communicator);
+  MPI_Allreduce(MPI_IN_PLACE, counts.data(), 3, MPI_UINT64_T, MPI_SUM, grid.communicator);
   for (unsigned d = 0; d < 3; ++d)
   {
     summary.force[d] = sums[d];
@@ -253,7 +311,8 @@ void BoundaryLoad::reduce(TractionSummary &summary) const
   summary.absolute_force = sums[6];
   summary.absolute_moment = sums[7];
   summary.n_points = counts[0];
-  summary.n_unresolved = counts[1];
+  summary.n_evaluations = counts[1];
+  summary.n_unresolved = counts[2];
 }
 
 void BoundaryLoad::add_uniform(dealii::types::boundary_id boundary, const dealii::Tensor<1, 3> &traction,
@@ -268,7 +327,7 @@ void BoundaryLoad::add_uniform(dealii::types::boundary_id boundary, const dealii
       continue;
     }
     samples.clear();
-    append_points({face, {0., 0.}, {1., 1.}, {0, 0}, {most_points, most_points}, {}, 0., {}}, samples);
+    append_points({face, {0., 0.}, {1., 1.}, {0, 0}, {}, 0., {}}, {most_points, most_points}, samples);
     for (const Sample &s : samples)
     {
       for (unsigned k = 0; k < 3 * nodes_of_face[face].size(); ++k)

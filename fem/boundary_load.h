@@ -1,63 +1,89 @@
 #pragma once
 
 #include "fem/elastic_system.h"
+#include "fem/lagrange.h"
 #include "fem/nodal_grid.h"
 #include "fem/traction_field.h"
 
+#include <array>
 #include <vector>
 
 namespace ddfem::fem
 {
 /// Integrals over the boundary faces of the locally owned cells.
 ///
-/// The traction of a field varies on the scale of its distance to the nearest singularity, whatever the size of a face.
-/// Faces are halved, in each direction on its own, until a Gauss rule of moderate order is enough. For a function that
-/// is analytic up to a distance s from an interval of length h the rule with n points errs by about rho^(-2n), rho =
-/// 2s/h + sqrt((2s/h)^2 + 1) (Bernstein ellipse; Trefethen, SIAM Review 50 (2008) 67, theorem 4.5).
+/// The traction of a source varies on the scale of its distance to the source, whatever the size of a face. On each face
+/// the sources for which a Gauss rule of moderate order is enough are integrated with the order that each of them needs;
+/// the rest goes down to the halves of the face (in each direction on its own), and so on. Every source is thus seen by
+/// as few points as its distance allows: far lines by a few points of each face, near ones by many points close to them.
+///
+/// For a function that is analytic up to a distance s from an interval of length h the rule with n points errs by about
+/// rho^(-2n), rho = 2s/h + sqrt((2s/h)^2 + 1) (Bernstein ellipse; Trefethen, SIAM Review 50 (2008) 67, theorem 4.5). One
+/// point more covers the growth of the shape functions on the ellipse. The error of a source on a piece of face is then
+/// at most about `tolerance` times its largest traction there times the area.
 class BoundaryLoad
 {
 public:
   /// `centre`: about which moments are taken, nm. `tolerance`: relative error aimed at.
   BoundaryLoad(const NodalGrid &grid, const dealii::Point<3> &centre, double tolerance);
 
-  /// load += -int N . (sigma~ n) dS over the whole boundary. Collective; calls the field's stress() once on each rank.
+  /// load += -int N . (sigma~ n) dS over the whole boundary. Collective; threaded over faces, with a result that does not
+  /// depend on the number of threads.
   TractionSummary add_field(const TractionField &field, NodalVector &load) const;
 
   /// load += int N . traction dS over the faces with the given id. Collective.
   void add_uniform(dealii::types::boundary_id boundary, const dealii::Tensor<1, 3> &traction, NodalVector &load) const;
 
 private:
-  /// Part of a face: a rectangle in the face's unit coordinates, its Gauss points per direction.
+  /// A piece is halved when it would need more Gauss points than this in a direction. Fewer points on smaller pieces
+  /// cost more near a line, more points on larger ones cost more where only a corner of the piece is near it.
+  static constexpr unsigned most_points = 12;
+
+  /// Part of a face: a rectangle in the face's unit coordinates.
   struct Piece
   {
     unsigned face;
     std::array<double, 2> low, size;
-    std::array<unsigned, 2> depth, order;
+    std::array<unsigned, 2> depth;
     /// Geometry: ball around the piece, longest edge in each direction, nm.
     dealii::Point<3> centre;
     double radius;
     std::array<double, 2> length;
   };
+  using Orders = std::array<unsigned, 2>; // Gauss points in each direction
   struct Sample
   {
     dealii::Point<3> position;
     dealii::Tensor<1, 3> area;      // outward normal times dA, nm^2
     std::array<double, 9> values{}; // shape functions of the face's nodes
   };
+  /// What a face contributes.
+  struct FaceIntegral
+  {
+    std::array<dealii::Tensor<1, 3>, 9> nodal; // int N t dA
+    dealii::Tensor<1, 3> force, moment;
+    std::uint64_t n_points = 0, n_evaluations = 0, n_unresolved = 0;
+  };
+  struct Workspace;
 
   void measure(Piece &piece) const;
   Sample sample(unsigned face, double s, double t) const;
   unsigned required_order(double length, double distance) const;
-  std::vector<Piece> divide(const TractionField &field, std::uint64_t &n_unresolved) const;
-  /// Moves a piece to `done`, or its parts to `next`; false when it is done only because it may not be divided any
-  /// further.
-  bool halve(Piece piece, double distance, std::vector<Piece> &next, std::vector<Piece> &done) const;
-  void append_points(const Piece &piece, std::vector<Sample> &samples) const;
+  FaceIntegral integrate_face(const TractionField &field, unsigned face, Workspace &work) const;
+  /// Integrates the sources over a piece, or over its parts.
+  void descend(const TractionField &field, Piece piece, const std::vector<unsigned> &sources, FaceIntegral &result,
+               Workspace &work) const;
+  /// Into how many parts each direction of a piece is divided for a source at a distance; 1, 1 at the limit.
+  std::array<unsigned, 2> divisions(const Piece &piece, double distance) const;
+  void integrate(const TractionField &field, const Piece &piece, const Orders &orders,
+                 const std::vector<unsigned> &sources, FaceIntegral &result, Workspace &work) const;
+  void append_points(const Piece &piece, const Orders &orders, std::vector<Sample> &samples) const;
+  void add_face(unsigned face, const FaceIntegral &integral, TractionSummary &summary, NodalVector &load) const;
   void reduce(TractionSummary &summary) const;
 
   const NodalGrid &grid;
   dealii::Point<3> centre;
-  double tolerance;
+  std::array<double, most_points + 1> least_ratio;  // smallest 2s/h for which a number of points is enough
   std::vector<std::vector<unsigned>> nodes_of_face; // local nodes of each boundary face
 };
 } // namespace ddfem::fem

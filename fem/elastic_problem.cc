@@ -40,7 +40,7 @@ public:
         boundary_load(grid, volume_centre.second, given.traction_tolerance),
         recovery(grid, lame_lambda(moduli), moduli.mu, given.recovery == Recovery::patches),
         locator(grid, given.outside_tolerance), field_load(system.make_vector()), uniform_load(system.make_vector()),
-        displacement(system.make_vector()), starts(system, given.extrapolate ? 2 : 1)
+        displacement(system.make_vector()), starts(system, given.n_start_vectors)
   {
     displacement.update_ghost_values();
     for (unsigned node = 0; node < grid.n_owned_nodes; ++node)
@@ -70,7 +70,7 @@ public:
   /// A vector with the given values at boundary_points() and zero elsewhere; only prescribed components, if asked for.
   NodalVector from_boundary(const std::vector<dealii::Tensor<1, 3>> &values, bool only_prescribed) const;
 
-  const Parameters parameters;
+  Parameters parameters;
   const std::vector<DisplacementCondition> conditions;
   const NodalGrid grid;
   const std::map<dealii::types::boundary_id, double> areas;
@@ -217,7 +217,8 @@ ElasticProblem::ElasticProblem(const Triangulation &triangulation, const Paramet
                                const std::vector<DisplacementCondition> &conditions)
 {
   const auto start = Clock::now();
-  check(parameters, moduli);
+  check(parameters);
+  check(moduli);
   const auto areas = boundary_areas(triangulation, 1);
   for (const auto &condition : conditions)
   {
@@ -272,6 +273,14 @@ void ElasticProblem::clear_tractions()
 SolveInfo ElasticProblem::solve(const std::vector<dealii::Tensor<1, 3>> &prescribed)
 {
   return implementation->solve(prescribed);
+}
+
+void ElasticProblem::set_relative_tolerance(double tolerance)
+{
+  auto changed = implementation->parameters;
+  changed.relative_tolerance = tolerance;
+  check(changed);
+  implementation->parameters = changed;
 }
 
 std::vector<dealii::Tensor<1, 3>> ElasticProblem::boundary_displacements() const

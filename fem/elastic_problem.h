@@ -71,9 +71,9 @@ public:
     unsigned max_iterations = 1000;
     /// Aimed-at relative error of the integrals of the tractions.
     double traction_tolerance = 1e-6;
-    /// Start from that combination of the last two solutions which is best in the energy norm (Fischer, CMAME 163
-    /// (1998) 193) instead of the last one as it is.
-    bool extrapolate = true;
+    /// Each solve starts from that combination of this many last solutions which is best in the energy norm (Fischer,
+    /// CMAME 163 (1998) 193). At least 1.
+    unsigned n_start_vectors = 6;
     Recovery recovery = Recovery::patches;
     /// Points that lie farther outside the mesh than this fraction of a cell are errors in stress_at(),
     /// displacement_at().
@@ -112,6 +112,9 @@ public:
   /// once. Throws std::invalid_argument for a wrong size, std::runtime_error without convergence or with a load that is
   /// not finite.
   SolveInfo solve(const std::vector<dealii::Tensor<1, 3>> &prescribed);
+  /// Replaces Parameters::relative_tolerance from the next solve on. Local. Throws std::invalid_argument unless it lies
+  /// between 0 and 1.
+  void set_relative_tolerance(double tolerance);
 
   /// Correction u^ (nm) at boundary_points(). Local.
   std::vector<dealii::Tensor<1, 3>> boundary_displacements() const;
@@ -142,7 +145,8 @@ public:
   /// what the next solve starts from. Throws std::invalid_argument for a wrong size.
   void set_solution(const std::vector<double> &values);
 
-  /// What the next solve starts from: locally owned unknowns of at most two vectors, the most recent first. With the
+  /// What the next solve starts from: locally owned unknowns of at most
+  /// Parameters::n_start_vectors solutions, the most recent first. With the
   /// same mesh and number of ranks a restart that puts them back continues bit by bit. Local.
   std::vector<std::vector<double>> start_vectors() const;
   /// Throws std::invalid_argument for a wrong size.

@@ -1,5 +1,6 @@
 #include "fem/mesh.h"
 
+#include "fem/cantilever.h"
 #include "fem/cylinder.h"
 #include "fem/gather.h"
 #include "fem/gmsh_reader.h"
@@ -39,6 +40,22 @@ void make_box(const MeshParameters &parameters, dealii::Triangulation<3> &triang
   dealii::GridGenerator::subdivided_hyper_rectangle(triangulation, subdivisions, dealii::Point<3>(), opposite, true);
 }
 
+void check_pillar(const MeshParameters &parameters)
+{
+  const PillarGeometry &g = parameters.pillar;
+  require(is_length(g.top_radius) && is_length(g.height) && is_length(g.base_width) && is_length(g.base_height),
+          "mesh: radius, height, base width and base height of the pillar must be positive");
+  require(g.taper >= 0. && g.taper < 0.78,
+          "mesh: the taper angle of the pillar must be at least 0 and less than 45 degrees");
+  require(g.fillet_radius >= 0. && g.fillet_top() < g.height, "mesh: the fillet of radius ", g.fillet_radius,
+          " nm must end below the top of the pillar, whose height is ", g.height, " nm");
+  require(2. * g.foot_radius() < g.base_width, "mesh: the foot of the pillar has with its fillet the diameter ",
+          2. * g.foot_radius(), " nm, and the base is ", g.base_width, " nm wide only");
+  require(parameters.subdivisions[0] >= 3, "mesh: the pillar needs at least 3 cells across its diameter");
+  require(parameters.subdivisions[1] > 0 && parameters.subdivisions[2] > 0,
+          "mesh: the pillar needs at least one cell through its base and one along its axis");
+}
+
 /// The undivided mesh, the same on every rank.
 void make_serial(const MeshParameters &parameters, dealii::Triangulation<3> &triangulation)
 {
@@ -49,6 +66,13 @@ void make_serial(const MeshParameters &parameters, dealii::Triangulation<3> &tri
       make_cylinder(triangulation, parameters.radius, parameters.height, parameters.subdivisions[0],
                     parameters.subdivisions[2]);
       break;
+    case Shape::pillar:
+      make_pillar(triangulation, parameters.pillar,
+                  {parameters.subdivisions[0], parameters.subdivisions[1], parameters.subdivisions[2]});
+      break;
+    case Shape::cantilever:
+      make_cantilever(triangulation, parameters.size, parameters.block, parameters.subdivisions);
+      break;
     case Shape::gmsh:
       read_gmsh(parameters.file, triangulation);
       dealii::GridTools::scale(parameters.length_unit_nm, triangulation);
@@ -56,6 +80,10 @@ void make_serial(const MeshParameters &parameters, dealii::Triangulation<3> &tri
   }
   const dealii::Tensor<1, 3> shift({parameters.origin[0], parameters.origin[1], parameters.origin[2]});
   dealii::GridTools::shift(shift, triangulation);
+  if (parameters.shape == Shape::pillar)
+  {
+    attach_pillar_manifolds(triangulation, parameters.pillar, dealii::Point<3>(shift));
+  }
   if (parameters.shape == Shape::cylinder)
   {
     const dealii::Tensor<1, 3> axis({0., 0., 1.});
@@ -93,6 +121,18 @@ void check(const MeshParameters &parameters)
       require(n[0] >= 3, "mesh: the cylinder needs at least 3 cells across its diameter");
       require(n[2] > 0, "mesh: the cylinder needs at least one cell along its axis");
       break;
+    case Shape::pillar: check_pillar(parameters); break;
+    case Shape::cantilever:
+      for (unsigned d = 0; d < 3; ++d)
+      {
+        require(
+            is_length(parameters.size[d]) && is_length(parameters.block[d]) && n[d] > 0,
+            "mesh: the cantilever needs positive lengths of beam and root block and at least one cell along each axis");
+        require(d == 0 || parameters.size[d] < parameters.block[d],
+                "mesh: the root block of the cantilever must be wider than the beam along y and z, but is ",
+                parameters.block[d], " nm wide and the beam ", parameters.size[d], " nm");
+      }
+      break;
     case Shape::gmsh:
       require(!parameters.file.empty(), "mesh: a gmsh mesh needs the name of its file");
       require(is_length(parameters.length_unit_nm), "mesh: the length unit of the gmsh file '", parameters.file,
@@ -120,6 +160,9 @@ std::map<dealii::types::boundary_id, std::string> boundary_names(const MeshParam
   {
     case Shape::box: return {{0, "x-"}, {1, "x+"}, {2, "y-"}, {3, "y+"}, {4, "z-"}, {5, "z+"}};
     case Shape::cylinder: return {{0, "side"}, {1, "bottom"}, {2, "top"}};
+    case Shape::pillar: return {{0, "side"}, {1, "bottom"}, {2, "top"}, {3, "base-top"}, {4, "base-side"}};
+    case Shape::cantilever:
+      return {{0, "end"}, {1, "root"}, {2, "beam-y-"}, {3, "beam-y+"}, {4, "beam-z-"}, {5, "beam-z+"}, {6, "block"}};
     case Shape::gmsh: break;
   }
   return gmsh_surface_names(parameters.file);

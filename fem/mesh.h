@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fem/pillar.h"
 #include "fem/triangulation.h"
 
 #include <deal.II/base/point.h>
@@ -19,21 +20,27 @@ struct MeshParameters
 {
   enum class Shape
   {
-    box,      ///< rectangular block, edges along x, y, z
-    cylinder, ///< circular cylinder, axis along z
-    gmsh      ///< hexahedra read from a gmsh .msh file
+    box,        ///< rectangular block, edges along x, y, z
+    cylinder,   ///< circular cylinder, axis along z
+    pillar,     ///< round, tapered, axis along z, on a square base with a fillet
+    cantilever, ///< beam along x that grows from a root block
+    gmsh        ///< hexahedra read from a gmsh .msh file
   };
 
   Shape shape = Shape::box;
-  /// Box: edge lengths.
+  /// Box, and beam of the cantilever: edge lengths.
   std::array<double, 3> size = {1000., 1000., 1000.};
-  /// Box: its lowest corner. Cylinder: centre of the bottom disc. gmsh: added to the scaled coordinates.
+  /// Box, and root block of the cantilever: lowest corner. Cylinder, and base of the pillar: centre of the bottom. gmsh: added
+  /// to the scaled coordinates.
   std::array<double, 3> origin = {0., 0., 0.};
   /// Cylinder only.
   double radius = 500.;
   double height = 2000.;
-  /// Box: cells per axis. Cylinder: [0] cells across a diameter (at least 3; [1] is not used), [2] cells along the
-  /// axis.
+  PillarGeometry pillar;
+  /// Edge lengths of the cantilever's root block, wider than the beam along y and z.
+  std::array<double, 3> block = {1000., 3000., 3000.};
+  /// Box, and beam of the cantilever: cells per axis. Cylinder and pillar: [0] cells across a diameter (at least 3), [1] cells
+  /// through the pillar's base (not used for the cylinder), [2] cells along the axis.
   std::array<unsigned, 3> subdivisions = {8, 8, 8};
   /// gmsh: path of the file (ASCII, format 2.2 or 4.1, first-order hexahedra).
   std::string file;
@@ -48,13 +55,14 @@ struct MeshParameters
 void check(const MeshParameters &parameters);
 
 /// Builds the mesh. Collective. Boundary ids: box x-, x+, y-, y+, z-, z+ = 0..5; cylinder side 0, bottom (z-) 1, top
-/// (z+) 2; gmsh: the physical surface numbers. The curved side of a cylinder carries deal.II's cylindrical manifold, so
+/// (z+) 2; pillar and cantilever see make_pillar() and make_cantilever(); gmsh: the physical surface numbers. The curved side of a cylinder or pillar carries a manifold, so
 /// that a mapping of degree two has an error of the fourth order in the cell size; gmsh meshes have flat-edged cells.
 /// Throws std::invalid_argument (see check()) and std::runtime_error for a file that cannot be opened or read, that has
 /// no hexahedra or other cells besides, or whose boundary is not covered by physical surfaces.
 TriangulationPointer make_mesh(MPI_Comm communicator, const MeshParameters &parameters);
 
-/// Names of the boundary ids: "x-", ..., "z+"; "side", "bottom", "top"; gmsh: names of the physical surfaces, and the
+/// Names of the boundary ids: "x-", ..., "z+"; "side", "bottom", "top"; of the pillar also "base-top", "base-side"; "end", "root",
+/// "beam-y-", ..., "beam-z+", "block"; gmsh: names of the physical surfaces, and the
 /// number as text for one without a name (`ids` present in the mesh, see boundary_areas()). Reads the file's header
 /// only.
 std::map<dealii::types::boundary_id, std::string> boundary_names(const MeshParameters &parameters);

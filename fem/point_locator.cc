@@ -219,15 +219,17 @@ std::vector<double> PointLocator::evaluate(const std::vector<dealii::Point<3>> &
                                            const std::vector<double> &fields)
 {
   hints.resize(points.size(), no_cell);
-  std::vector<Place> places;
+  std::vector<Place> places(points.size());
+#pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    places.push_back(locate(points[i], hints[i]));
-    hints[i] = places.back().cell;
+    places[i] = locate(points[i], hints[i]);
+    hints[i] = places[i].cell;
   }
   std::vector<int> winners;
   elect(points, places, winners);
   std::vector<double> values(points.size() * n_components, 0.);
+#pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     if (winners[i] != rank)

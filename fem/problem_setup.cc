@@ -8,7 +8,7 @@
 
 namespace ddfem::fem
 {
-void check(const ElasticProblem::Parameters &parameters, const Moduli &moduli)
+void check(const ElasticProblem::Parameters &parameters)
 {
   require(parameters.degree == 1 || parameters.degree == 2, "the degree of the elements must be 1 or 2, but is ",
           parameters.degree);
@@ -19,6 +19,12 @@ void check(const ElasticProblem::Parameters &parameters, const Moduli &moduli)
           "the tolerance of the tractions must lie between 0 and 1, but is ", parameters.traction_tolerance);
   require(parameters.outside_tolerance >= 0. && parameters.outside_tolerance < 1.,
           "the tolerance for points outside must lie between 0 and 1, but is ", parameters.outside_tolerance);
+  require(parameters.n_start_vectors > 0, "a solve must start from at least one earlier solution, not from ",
+          parameters.n_start_vectors);
+}
+
+void check(const Moduli &moduli)
+{
   require(moduli.mu > 0. && std::isfinite(moduli.mu), "the shear modulus must be positive, but is ", moduli.mu, " MPa");
   require(moduli.nu > -1. && moduli.nu < 0.5, "Poisson's ratio must lie between -1 and 0.5, but is ", moduli.nu);
 }

@@ -11,7 +11,8 @@
 namespace ddfem::fem
 {
 /// Throws std::invalid_argument for values without sense.
-void check(const ElasticProblem::Parameters &parameters, const Moduli &moduli);
+void check(const ElasticProblem::Parameters &parameters);
+void check(const Moduli &moduli);
 
 /// First Lame constant, MPa.
 double lame_lambda(const Moduli &moduli);

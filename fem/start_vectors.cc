@@ -1,6 +1,7 @@
 #include "fem/start_vectors.h"
 
-#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace ddfem::fem
 {
@@ -22,31 +23,32 @@ void StartVectors::remember(const NodalVector &solution)
 
 NodalVector StartVectors::best(const NodalVector &load) const
 {
+  // Gram-Schmidt in the energy product, the most recent solution first: solutions of neighbouring times differ by little,
+  // and so the first vectors hold what is common, the later ones differences of growing order.
   NodalVector x = system.make_vector();
-  if (starts.empty())
+  std::vector<Start> basis;
+  for (const Start &start : starts)
   {
-    return x;
-  }
-  const Start &one = starts[0];
-  const double a11 = one.vector * one.product, b1 = one.vector * load;
-  if (!(a11 > 0.))
-  {
-    return x;
-  }
-  if (starts.size() > 1)
-  {
-    const Start &two = starts[1];
-    const double a12 = one.vector * two.product, a22 = two.vector * two.product, b2 = two.vector * load;
-    const double determinant = a11 * a22 - a12 * a12;
-    // Two nearly equal solutions span no plane that rounding leaves intact.
-    constexpr double independent = 1e-10;
-    if (determinant > independent * a11 * a22)
+    Start next = start;
+    const double energy = next.vector * next.product;
+    for (const Start &earlier : basis)
     {
-      x.add((a22 * b1 - a12 * b2) / determinant, one.vector, (a11 * b2 - a12 * b1) / determinant, two.vector);
-      return x;
+      const double overlap = next.vector * earlier.product;
+      next.vector.add(-overlap, earlier.vector);
+      next.product.add(-overlap, earlier.product);
     }
+    const double rest = next.vector * next.product;
+    // A difference of 1e-7 of the vectors has lost all but two digits of its energy.
+    constexpr double independent = 1e-14;
+    if (!(rest > independent * energy))
+    {
+      continue;
+    }
+    next.vector /= std::sqrt(rest);
+    next.product /= std::sqrt(rest);
+    x.add(next.vector * load, next.vector);
+    basis.push_back(std::move(next));
   }
-  x.add(most > 1 ? b1 / a11 : 1., one.vector);
   return x;
 }
 

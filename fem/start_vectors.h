@@ -7,15 +7,16 @@
 
 namespace ddfem::fem
 {
-/// The last one or two solutions (free unknowns) and what the next solve is to start from.
+/// The last few solutions (free unknowns) and what the next solve is to start from.
 class StartVectors
 {
 public:
-  /// `most`: 1 to start from the last solution, 2 to start from the best combination of the last two.
+  /// `most`: how many solutions are kept, at least one.
   StartVectors(const ElasticSystem &system, std::size_t most);
 
-  /// Vector to start from for a load: zero without history; with two vectors their combination that minimises the
-  /// energy x.Kx/2 - x.load (Fischer, CMAME 163 (1998) 193). Collective.
+  /// Vector to start from for a load: the combination of the kept solutions that minimises the energy x.Kx/2 - x.load
+  /// (Fischer, CMAME 163 (1998) 193); zero without history. For a load that varies smoothly in time this is at least as
+  /// good as the extrapolation by a polynomial through the kept solutions. Collective.
   NodalVector best(const NodalVector &load) const;
 
   /// Takes a solution in as the most recent one. Collective.

@@ -113,6 +113,7 @@ void StressRecovery::stress_at_gauss_points(unsigned cell, const NodalVector &di
 std::vector<double> StressRecovery::recover(const NodalVector &displacement) const
 {
   std::vector<std::array<double, 6>> stress(std::size_t{grid.n_cells()} * n_points);
+#pragma omp parallel for schedule(static)
   for (unsigned cell = 0; cell < grid.n_cells(); ++cell)
   {
     stress_at_gauss_points(cell, displacement, &stress[std::size_t{cell} * n_points]);

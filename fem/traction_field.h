@@ -3,47 +3,49 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
+#include <deal.II/base/types.h>
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 namespace ddfem::fem
 {
-/// Stress field sigma~ (MPa, sample frame) whose traction loads the boundary; implemented by the caller.
+/// Stress field sigma~ (MPa, sample frame) whose traction loads the boundary: a sum over sources 0 ... n_sources() - 1,
+/// each with its own singularities. Implemented by the caller. All members are local and are called by several threads
+/// at once, each with its own arguments.
 class TractionField
 {
 public:
   virtual ~TractionField() = default;
 
-  /// Lower bound (nm) of the distance between any point of the ball (centre, radius) and the nearest singularity of the
-  /// field (for a regularised field the core radius at least). May be infinite; zero or less means nothing is known.
-  virtual double smooth_length(const dealii::Point<3> &centre, double radius) const = 0;
+  virtual unsigned n_sources() const = 0;
 
-  /// smooth_length() of many balls; override it when the whole batch can be had faster (threads). `lengths` has the
-  /// right size on entry. Not collective: ranks call it as often as their faces need.
-  virtual void smooth_lengths(const std::vector<dealii::Point<3>> &centres, const std::vector<double> &radii,
-                              std::vector<double> &lengths) const
-  {
-    for (std::size_t i = 0; i < centres.size(); ++i)
-    {
-      lengths[i] = smooth_length(centres[i], radii[i]);
-    }
-  }
+  /// Lower bounds (nm), one for each of `sources`, of the distance between any point of the ball (centre, radius; nm) and
+  /// the nearest singularity of that source in the complex plane (for a regularised field the core radius at least). May
+  /// be infinite; zero or less means that nothing is known.
+  virtual void smooth_lengths(const dealii::Point<3> &centre, double radius, std::span<const unsigned> sources,
+                              std::span<double> lengths) const = 0;
 
-  /// Stresses (MPa) at points (nm). `values` has the size of `points` on entry. Called by every rank with its own
-  /// points, the same number of times on all ranks, possibly with none: collective implementations are allowed.
-  virtual void stress(const std::vector<dealii::Point<3>> &points,
-                      std::vector<dealii::SymmetricTensor<2, 3>> &values) const = 0;
+  /// values += stress (MPa) of all `sources` together at points (nm); both spans have the same size.
+  virtual void add_stress(std::span<const unsigned> sources, std::span<const dealii::Point<3>> points,
+                          std::span<dealii::SymmetricTensor<2, 3>> values) const = 0;
+
+  /// Whether the traction of a source is known to be zero on the whole boundary with an id; it is not integrated there.
+  virtual bool vanishes_on(unsigned /*source*/, dealii::types::boundary_id /*boundary*/) const { return false; }
 };
 
 /// Integrals of t = sigma~ n over the whole closed boundary, n outward, summed over the ranks.
 struct TractionSummary
 {
-  dealii::Tensor<1, 3> force;     ///< int t dA, MPa nm^2; zero for a divergence-free field
-  dealii::Tensor<1, 3> moment;    ///< int (x - c) x t dA about the grain's centre c, MPa nm^3
-  double absolute_force = 0.;     ///< int |t| dA, MPa nm^2: the scale of `force`
-  double absolute_moment = 0.;    ///< int |x - c| |t| dA, MPa nm^3: the scale of `moment`
-  std::uint64_t n_points = 0;     ///< quadrature points used
-  std::uint64_t n_unresolved = 0; ///< pieces of faces at the limit of subdivision, not integrated to the tolerance
+  dealii::Tensor<1, 3> force;  ///< int t dA, MPa nm^2; zero for a divergence-free field
+  dealii::Tensor<1, 3> moment; ///< int (x - c) x t dA about the grain's centre c, MPa nm^3
+  /// Scale of `force`: sum over faces and their nodes of |int N t dA|, MPa nm^2. It does not depend on how the field is
+  /// divided into sources. Equal to int |t| dA for degree 1 and a traction of one direction on each face; less where the
+  /// traction changes its direction within an element.
+  double absolute_force = 0.;
+  double absolute_moment = 0.;     ///< scale of `moment`: the same sum weighted with |x - c| of the nodes, MPa nm^3
+  std::uint64_t n_points = 0;      ///< quadrature points used
+  std::uint64_t n_evaluations = 0; ///< pairs of source and quadrature point: the cost
+  std::uint64_t n_unresolved = 0;  ///< pieces of faces at the limit of subdivision, not integrated to the tolerance
 };
 } // namespace ddfem::fem

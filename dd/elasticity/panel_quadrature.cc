@@ -40,6 +40,13 @@ LineSingularities LineSingularities::of_segment(const Vec3 &x1, const Vec3 &x2, 
   return result;
 }
 
+LineSingularities LineSingularities::of_point(const Vec3 &x, double a, const Vec3 &x3, const Vec3 &t)
+{
+  LineSingularities result;
+  result.add_end(x, a, x3, t);
+  return result;
+}
+
 LineSingularities LineSingularities::of_ray(const Vec3 &origin, const Vec3 &direction, double a, const Vec3 &x3,
                                             const Vec3 &t)
 {

@@ -29,8 +29,13 @@ class LineSingularities
 public:
   /// Of the field of segment @p x1 -> @p x2, core radius @p a, on the line from @p x3 along the unit vector @p t.
   static LineSingularities of_segment(const Vec3 &x1, const Vec3 &x2, double a, const Vec3 &x3, const Vec3 &t);
+  /// Of a function of the distance of the line's points from @p x, regularised with @p a.
+  static LineSingularities of_point(const Vec3 &x, double a, const Vec3 &x3, const Vec3 &t);
   /// Of the field of a ray.
   static LineSingularities of_ray(const Vec3 &origin, const Vec3 &direction, double a, const Vec3 &x3, const Vec3 &t);
+
+  /// Adds position +- i height; three in all.
+  void add(double position, double height) { singularities[n++] = {position, height}; }
 
   /// Size rho of the largest Bernstein ellipse of panel [@p begin, @p end] free of singularities.
   double ellipse(double begin, double end) const;

@@ -14,9 +14,20 @@
 
 #include "dd/common/types.h"
 #include "dd/elasticity/isotropic.h"
+#include "dd/elasticity/stress_point.h"
+
+#include <cstddef>
 
 namespace ddfem
 {
+/// Points and the stresses at them, component by component, for evaluation in a vectorised loop.
+struct StressBatch
+{
+  std::size_t n;      ///< number of points
+  const double *x[3]; ///< coordinates, nm
+  double *sigma[6];   ///< xx yy zz xy xz yz, MPa
+};
+
 /// Stress (MPa) at @p x (nm) of the segment @p x1 -> @p x2 (nm) with Burgers vector @p b (nm, FS/RH). Zero for a
 /// segment of length zero. A core radius of zero is allowed as long as @p x is not on the segment.
 SymTensor segment_stress(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &x1, const Vec3 &x2, const Vec3 &b);
@@ -35,12 +46,14 @@ public:
 
   /// Stress at @p x, MPa.
   SymTensor operator()(const Vec3 &x) const;
+  /// Adds the stress at many points. The loop is vectorised for the processor that the program runs on; the result may
+  /// differ from operator() by rounding.
+  void add(const StressBatch &batch) const;
 
 private:
-  Vec3 x1, x2, b;
-  Vec3 t; ///< unit line direction
-  Vec3 e; ///< b x t, nm
-  double length, a2, inverse_one_minus_nu, prefactor;
+  Vec3 x1, x2;
+  double length;
+  internal::LineConstants constants;
 };
 
 /// The stress field of one ray, for evaluation at many points; same arguments as ray_stress().
@@ -51,9 +64,11 @@ public:
 
   /// Stress at @p x, MPa.
   SymTensor operator()(const Vec3 &x) const;
+  /// As SegmentStressField::add().
+  void add(const StressBatch &batch) const;
 
 private:
-  Vec3 origin, b, t, e;
-  double a2, inverse_one_minus_nu, prefactor;
+  Vec3 origin;
+  internal::LineConstants constants;
 };
 } // namespace ddfem

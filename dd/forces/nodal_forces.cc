@@ -22,20 +22,28 @@ SegmentForces &slot(Contributions &c, const ForceContribution which)
   return c[static_cast<std::size_t>(which)];
 }
 
-/// Nodal forces of a stress field known at the segment's Gauss points: f = int N (sigma . b) x dx.
-template <class StressAtPoint> SegmentForces force_of_field(const StraightLine &line, StressAtPoint &&stress)
+/// Nodal forces of a stress field: f = int N (sigma . b) x dx, by a rule on [0, 1].
+template <class StressAtPoint>
+SegmentForces force_of_field(const StraightLine &line, const std::span<const double> fractions,
+                             const std::span<const double> weights, StressAtPoint &&stress)
 {
-  const GaussRule rule = gauss_rule(static_cast<int>(n_segment_points));
   const Vec3 t = line.end - line.start;
   SegmentForces f{Vec3::Zero(), Vec3::Zero()};
-  for (std::size_t q = 0; q < n_segment_points; ++q)
+  for (std::size_t q = 0; q < fractions.size(); ++q)
   {
-    const double s = rule.points[q];
-    const Vec3 df = rule.weights[q] * contract(stress(q, Vec3(line.start + s * t)), line.burgers).cross(t);
+    const double s = fractions[q];
+    const Vec3 df = weights[q] * contract(stress(q, Vec3(line.start + s * t)), line.burgers).cross(t);
     f.start += (1 - s) * df;
     f.end += s * df;
   }
   return f;
+}
+
+/// The same for a field that varies little along a segment.
+template <class StressAtPoint> SegmentForces force_of_smooth_field(const StraightLine &line, StressAtPoint &&stress)
+{
+  const GaussRule rule = gauss_rule(3);
+  return force_of_field(line, rule.points, rule.weights, stress);
 }
 
 /// All contributions to the ends of segment number @p i.
@@ -48,7 +56,7 @@ Contributions segment_contributions(const LineSystem &system, const std::size_t 
   const auto &medium = settings.medium;
 
   slot(c, ForceContribution::applied) =
-      force_of_field(line, [&](std::size_t, const Vec3 &) -> const SymTensor & { return environment.applied; });
+      force_of_smooth_field(line, [&](std::size_t, const Vec3 &) -> const SymTensor & { return environment.applied; });
   slot(c, ForceContribution::self) = self_force(medium, line.start, line.end, line.burgers);
   slot(c, ForceContribution::core) =
       core_force(medium, CoreEnergy{settings.core_cutoff_radius}, line.start, line.end, line.burgers);
@@ -69,12 +77,11 @@ Contributions segment_contributions(const LineSystem &system, const std::size_t 
         medium, ray.origin, ray.direction, ray.burgers, line.start, line.end, line.burgers, settings.pair_tolerance);
   if (system.far_images())
     slot(c, ForceContribution::images) +=
-        force_of_field(line, [&](std::size_t, const Vec3 &x) { return system.far_images()->far_stress(x); });
-  if (environment.correction && !environment.correction->empty())
-    slot(c, ForceContribution::correction) =
-        force_of_field(line,
-                       [&](const std::size_t q, const Vec3 &) -> const SymTensor &
-                       { return (*environment.correction)[i * n_segment_points + q]; });
+        force_of_smooth_field(line, [&](std::size_t, const Vec3 &x) { return system.far_images()->far_stress(x); });
+  if (const SegmentField *const field = environment.correction; field && field->points.n_segments() > 0)
+    slot(c, ForceContribution::correction) = force_of_field(line, field->points.fractions(i), field->points.weights(i),
+                                                            [&](const std::size_t q, const Vec3 &) -> const SymTensor &
+                                                            { return field->stress[field->points.begin_of(i) + q]; });
   return c;
 }
 
@@ -100,17 +107,6 @@ const char *name_of(const ForceContribution c)
   constexpr std::array<const char *, n_force_contributions> names{"applied", "self",   "core",      "pairs",
                                                                   "rays",    "images", "correction"};
   return names[static_cast<std::size_t>(c)];
-}
-
-std::vector<Vec3> segment_points(const Network &network)
-{
-  const GaussRule rule = gauss_rule(static_cast<int>(n_segment_points));
-  std::vector<Vec3> points;
-  points.reserve(network.n_segments() * n_segment_points);
-  for (const SegmentIndex s : network.segments())
-    for (std::size_t q = 0; q < n_segment_points; ++q)
-      points.emplace_back(network.position(network.start(s)) + rule.points[q] * network.direction(s));
-  return points;
 }
 
 NodalForces compute_nodal_forces(const Network &network, const ForceSettings &settings,

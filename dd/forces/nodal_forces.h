@@ -3,6 +3,7 @@
 
 #include "dd/elasticity/segment_force.h"
 #include "dd/forces/line_system.h"
+#include "dd/forces/segment_points.h"
 
 #include <mpi.h>
 
@@ -25,15 +26,6 @@ enum class ForceContribution : std::uint8_t
 inline constexpr std::size_t n_force_contributions = 7;
 const char *name_of(ForceContribution c);
 
-/// Number of Gauss points per segment at which external stress fields act.
-inline constexpr std::size_t n_segment_points = 3;
-
-/// Stress (MPa) at the Gauss points of all segments, in the order of Network::segments(), n_segment_points each.
-using SegmentPointStress = std::vector<SymTensor>;
-
-/// Positions (nm) of those Gauss points.
-std::vector<Vec3> segment_points(const Network &network);
-
 struct ForceSettings
 {
   IsotropicMedium medium;
@@ -51,7 +43,7 @@ struct ForceEnvironment
   const GrainShape *shape = nullptr;     ///< finite grain
   const PeriodicCell *cell = nullptr;
   PeriodicImages *images = nullptr;
-  const SegmentPointStress *correction = nullptr; ///< empty pointer: none
+  const SegmentField *correction = nullptr; ///< null or without points: none
 };
 
 /// Nodal forces, MPa nm^2 (= 1e-12 N), sample frame, indexed by NodeIndex::value.

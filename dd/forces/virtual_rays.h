@@ -15,14 +15,20 @@ struct VirtualRay
   Vec3 burgers; ///< for the line sense that leaves the origin, nm
 };
 
-/// How the rays of a convex grain are directed; the total field does not depend on it.
+/// How rays are directed if nothing is in the way; the total field does not depend on it.
 enum class RayDirection : std::uint8_t
 {
   normal, ///< outward normal of the face
   radial, ///< away from the centre of the grain's bounding box
 };
 
-/// Unit direction of the ray that starts at surface point @p x; does not re-enter a convex grain.
+/// Whether the ray from surface point @p x along the unit vector @p d stays outside the grain, at a distance of at least
+/// @p clearance times the way from @p x, up to a way of a twentieth of the grain's diameter.
+bool ray_is_free(const GrainShape &shape, const Vec3 &x, const Vec3 &d, double clearance);
+
+/// Unit direction of the ray that starts at surface point @p x and does not meet the grain again: that of the rule if
+/// it is free, and otherwise the free one nearest to the outward normal among 98 fixed directions. It depends on @p shape,
+/// @p rule and @p x only. Throws std::runtime_error naming the point if no direction is free, as in a closed cavity.
 Vec3 ray_direction(const GrainShape &shape, RayDirection rule, const Vec3 &x);
 
 /// Rays of all surface nodes whose Burgers vectors do not balance, derived afresh from the network.

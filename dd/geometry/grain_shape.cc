@@ -225,6 +225,17 @@ std::optional<Vec3> project_to_surface(const GrainShape &shape, const Vec3 &x, c
 Vec3 surface_crossing(const GrainShape &shape, const Vec3 &inside, const Vec3 &outside)
 {
   double lo = 0, hi = 1;
+  constexpr int n_looks = 8;
+  for (int k = 1; k < n_looks && !shape.is_convex(); ++k)
+  {
+    const double t = static_cast<double>(k) / n_looks;
+    if (shape.signed_distance(inside + t * (outside - inside)) > 0)
+    {
+      hi = t;
+      break;
+    }
+    lo = t;
+  }
   for (int i = 0; i < 60; ++i)
   {
     const double mid = 0.5 * (lo + hi);

@@ -17,7 +17,7 @@ enum class FaceKind : std::uint8_t
   impenetrable, ///< lines stop
 };
 
-/// Convex body bounded by faces with integer ids (the boundary ids of the mesh). Lengths in nm, sample frame.
+/// Body bounded by faces with integer ids (the boundary ids of the mesh). Lengths in nm, sample frame.
 class GrainShape
 {
 public:
@@ -30,7 +30,9 @@ public:
   virtual Vec3 outward_normal(const Vec3 &x) const = 0;
   /// Id of the face nearest to @p x.
   virtual int face(const Vec3 &x) const = 0;
-  virtual double volume() const = 0;     ///< nm^3
+  virtual double volume() const = 0; ///< nm^3
+  /// Whether every straight way out of the grain along the outward normal stays outside.
+  virtual bool is_convex() const { return true; }
   virtual Vec3 lower_corner() const = 0; ///< of the bounding box
   virtual Vec3 upper_corner() const = 0;
 
@@ -116,6 +118,7 @@ private:
 /// |signed_distance| < 1e-9 diameter. Empty if the plane does not meet the surface near @p x (it is parallel to the face).
 std::optional<Vec3> project_to_surface(const GrainShape &shape, const Vec3 &x, const Vec3 &plane_normal);
 
-/// First point on the surface along the straight path from @p inside (signed distance <= 0) to @p outside.
+/// First point on the surface along the straight path from @p inside (signed distance <= 0) to @p outside. In a re-entrant
+/// grain, ways out that are shorter than an eighth of the path may be overlooked.
 Vec3 surface_crossing(const GrainShape &shape, const Vec3 &inside, const Vec3 &outside);
 } // namespace ddfem

@@ -13,11 +13,4 @@ void move_nodes(TopologyContext &context, double fraction);
 /// Replaces the displacements of surface nodes, and of nodes that run into an impenetrable face, by the straight way to
 /// where move_nodes() will take them: what collisions need to know beforehand.
 void bend_displacements_along_surface(TopologyContext &context);
-
-/// Removes the pieces of line that lie in the surface (both ends are surface nodes and the middle is nearer to the surface
-/// than a tenth of the length): the line has left there.
-void remove_surface_segments(TopologyContext &context);
-
-/// Removes segment @p s, whose ends are surface nodes, by letting it leave through the surface between them.
-void leave_through_surface(TopologyContext &context, SegmentIndex s);
 } // namespace ddfem

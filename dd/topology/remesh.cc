@@ -1,7 +1,7 @@
 #include "dd/topology/remesh.h"
 
 #include "dd/topology/line_operations.h"
-#include "dd/topology/motion.h"
+#include "dd/topology/surface_lines.h"
 
 #include <algorithm>
 #include <array>
@@ -84,7 +84,9 @@ bool improve(TopologyContext &context, const Corner &corner)
   const Network &network = context.network;
   const TopologySettings &settings = context.settings;
   const bool too_short = corner.shorter() < settings.min_segment;
-  if ((too_short && corner.joined() <= longest_after_short(settings)) || is_flat(network, corner, settings))
+  // An arm of no length has no direction either; nothing moves when it goes.
+  const bool vanished = corner.shorter() < 1e-3 * settings.min_segment;
+  if (vanished || (too_short && corner.joined() <= longest_after_short(settings)) || is_flat(network, corner, settings))
   {
     remove_node(context, corner.node);
     ++context.counts.coarsenings;
@@ -203,7 +205,9 @@ void remesh(TopologyContext &context)
     release_short_surface_lines(context);
   refine(context);
   coarsen(context);
-  if (context.shape) // lines that have lost their last interior node
-    release_short_surface_lines(context);
+  if (!context.shape)
+    return;
+  settle_at_surface(context);
+  release_short_surface_lines(context); // lines that have lost their last interior node
 }
 } // namespace ddfem

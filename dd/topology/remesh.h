@@ -10,7 +10,7 @@ namespace ddfem
 ///  - a segment longer than L_max is divided into equal parts; one longer than 3 L_min is halved if the triangle of one of its
 ///    nodes with the neighbours is larger than the maximum area: the line is sharply bent there;
 ///  - a discretisation node with an arm shorter than L_min is removed if the joined segment is not longer than 2 L_min, and
-///    otherwise moved along its longer arm until both are equally long;
+///    otherwise moved along its longer arm until both are equally long; an arm of no length (1e-3 L_min) always goes;
 ///  - a discretisation node whose triangle is smaller than the minimum area is removed if its arms make an obtuse angle, the
 ///    joined segment is not longer than 2/3 L_max, and no neighbour becomes sharply bent.
 /// Nodes stay in their glide planes, physical nodes are not touched, and all area that a line sweeps is booked.

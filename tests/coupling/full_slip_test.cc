@@ -1,8 +1,5 @@
 #include "coupling/finite_grain.h"
-#include "dd/microstructure/sources.h"
-#include "dd/topology/growth.h"
-#include "dd/topology/motion.h"
-#include "dd/topology/remesh.h"
+#include "loop_that_has_left.h"
 
 #include <gtest/gtest.h>
 
@@ -13,66 +10,76 @@ namespace
 const IsotropicMedium medium{26.5e3, 0.345, 0.286};
 const Vec3 box_size(150, 120, 300);
 
-/// Triangles swept by a loop of Burgers vector @p b that grows on the plane of normal @p n until it has left the box.
-SweptArea loop_that_has_left(const GrainShape &shape, const Vec3 &n, const Vec3 &b)
+class FullSlip : public testing::Test
 {
-  Network network;
-  const Vec3 centre = 0.5 * box_size;
-  const PlaneIndex plane = network.planes().find_or_insert({0, 0, 0}, n, centre);
-  const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
-  std::vector<Vec3> points;
-  for (int k = 0; k < 12; ++k)
-    points.push_back(centre + 20 * (std::cos(M_PI * k / 6) * u + std::sin(M_PI * k / 6) * v));
-  add_line(network, points, b, plane, true, NodeConstraint::free);
-  SweptArea swept = grown_area(network, &shape, RayDirection::normal);
-  TopologyCounts counts;
-  const TopologySettings settings{6, 15, 0.3, 0.7};
-  for (int step = 0; step < 400 && network.n_segments() > 0; ++step)
+protected:
+  FullSlip()
   {
-    TopologyContext c{network,
-                      settings,
-                      &shape,
-                      RayDirection::normal,
-                      [](Network &, const Vec3 &, const Vec3 &, const Vec3 &, std::span<const Vec3>)
-                      { return PlaneIndex{}; },
-                      swept,
-                      counts,
-                      std::vector<Vec3>(network.node_capacity(), Vec3::Zero())};
-    for (const NodeIndex i : network.nodes())
-      c.remaining[i.value] = 2 * (network.position(i) - centre).normalized();
-    move_nodes(c, 1.0);
-    remesh(c);
+    GrainParameters p;
+    p.mesh.size = {box_size[0], box_size[1], box_size[2]};
+    p.mesh.subdivisions = {3, 3, 6};
+    p.clamped = false;
+    p.reference = ReferenceState::perfect_crystal;
+    grain = std::make_unique<FiniteGrain>(p, medium, MPI_COMM_WORLD);
+    grain->set_reference(network, lines());
+    const SweptArea swept = test::loop_that_has_left(network, grain->shape(), n, b);
+    grain->add_swept(swept);
+    solution = grain->solve(lines(), 0.0);
   }
+  LineSystem lines() const { return {medium, network, &grain->shape(), RayDirection::normal, nullptr, nullptr}; }
+
+  const Vec3 n = Vec3(0.4, 0.2, 1).normalized(), b = 0.286 * Vec3(1, 0, -0.4).normalized();
+  Network network;
+  std::unique_ptr<FiniteGrain> grain;
+  GrainSolution solution;
+};
+
+TEST_F(FullSlip, LoopThatHasLeftIsForgotten)
+{
   EXPECT_EQ(network.n_nodes(), 0U);
-  return swept;
+  EXPECT_EQ(network.n_segments(), 0U);
+  EXPECT_TRUE(lines().lines().empty());
+  EXPECT_TRUE(lines().rays().empty());
 }
 
-TEST(FullSlip, LoopThatHasLeftUnloadsTheBarByOneBurgersVectorAndLeavesNoStress)
+TEST_F(FullSlip, UnloadsTheBarByOneBurgersVectorAndLeavesNoStress)
 {
-  GrainParameters p;
-  p.mesh.size = {box_size[0], box_size[1], box_size[2]};
-  p.mesh.subdivisions = {3, 3, 6};
-  p.clamped = false;
-  p.reference = ReferenceState::perfect_crystal;
-  FiniteGrain grain(p, medium, MPI_COMM_WORLD);
-  const Vec3 n = Vec3(0.4, 0.2, 1).normalized(), b = 0.286 * Vec3(1, 0, -0.4).normalized();
-  const Network nothing;
-  const LineSystem no_lines(medium, nothing, &grain.shape(), RayDirection::normal, nullptr, nullptr);
-  grain.set_reference(nothing, no_lines);
-  const SweptArea swept = loop_that_has_left(grain.shape(), n, b);
-  grain.add_swept(swept);
-  const GrainSolution solution = grain.solve(no_lines, 0.0);
   // Reciprocity: F = - E strain_zz S with the mean plastic strain; the whole section has slipped by b.
   const double exact = medium.youngs_modulus() * b[2] * box_size[0] * box_size[1] / box_size[2];
   EXPECT_NEAR(solution.platen_reaction / exact, 1, 1e-3);
   EXPECT_NEAR(solution.fixed_reaction / solution.platen_reaction, 1, 1e-6);
   // The stress is the uniform one of the force: nothing of the loop is left.
-  for (const SymTensor &s : grain.correction_stress({Vec3(30, 40, 150), Vec3(75, 60, 160), Vec3(120, 20, 260)}))
+  for (const SymTensor &s : grain->correction_stress({Vec3(30, 40, 150), Vec3(75, 60, 160), Vec3(120, 20, 260)}))
   {
     SymTensor uniform = SymTensor::Zero();
-    uniform[2] = solution.platen_reaction / grain.section();
+    uniform[2] = solution.platen_reaction / grain->section();
     EXPECT_NEAR((s - uniform).norm() / std::abs(uniform[2]), 0, 2e-3);
   }
+}
+
+TEST_F(FullSlip, DisplacementOfTheSurfaceJumpsByTheBurgersVectorAcrossThePlane)
+{
+  // What is left besides the uniform strain of the platen force is two rigid blocks. Side towards which n points minus the
+  // other: -b (FS/RH, see PolygonLoop).
+  const double strain = solution.platen_reaction / grain->section() / medium.youngs_modulus();
+  const auto nodes = grain->boundary_nodes(), u = grain->boundary_displacement();
+  Vec3 sum[2] = {Vec3::Zero(), Vec3::Zero()};
+  double count[2] = {0, 0};
+  const auto side = [&](const Vec3 &x) { return n.dot(x - 0.5 * box_size) > 0 ? 1 : 0; };
+  const auto rest = [&](const std::size_t k)
+  { return Vec3(u[k] - strain * Vec3(-medium.nu * nodes[k][0], -medium.nu * nodes[k][1], nodes[k][2])); };
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+  {
+    sum[side(nodes[k])] += rest(k);
+    count[side(nodes[k])] += 1;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sum[0].data(), 3, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, sum[1].data(), 3, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, count, 2, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  const Vec3 mean[2] = {sum[0] / count[0], sum[1] / count[1]};
+  EXPECT_NEAR((mean[1] - mean[0] + b).norm() / b.norm(), 0, 1e-3);
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    EXPECT_NEAR((rest(k) - mean[side(nodes[k])]).norm() / b.norm(), 0, 1e-3);
 }
 } // namespace
 } // namespace ddfem::coupling

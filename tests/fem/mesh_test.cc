@@ -70,6 +70,16 @@ std::pair<Vector, double> closure(const std::vector<BoundaryFacet> &facets)
   }
   return {area, volume};
 }
+MeshParameters pillar()
+{
+  MeshParameters p;
+  p.shape = MeshParameters::Shape::pillar;
+  p.pillar = {100., 300., 0.06, 40., 400., 120.};
+  p.subdivisions = {6, 3, 6};
+  p.origin = {10., -20., 30.};
+  return p;
+}
+
 } // namespace
 
 TEST(Mesh, BoxHasItsPlaceSizeAndBoundaryIds)
@@ -97,7 +107,7 @@ TEST(Mesh, BoxHasItsPlaceSizeAndBoundaryIds)
 TEST(Mesh, BoundaryFacetsFormAClosedSurfaceSeenFromOutside)
 {
   for (const auto &parameters :
-       {box({200., 300., 500.}, {2, 3, 5}), cylinder(100., 300., 6, 4), mesh_file("pillar.msh")})
+       {box({200., 300., 500.}, {2, 3, 5}), cylinder(100., 300., 6, 4), mesh_file("pillar.msh"), pillar()})
   {
     const auto mesh = make_mesh(MPI_COMM_WORLD, parameters);
     const auto facets = boundary_facets(*mesh);
@@ -154,6 +164,89 @@ TEST(Mesh, RefinedCylinderStaysRoundWhereverItStands)
   }
 }
 
+TEST(Mesh, PillarConvergesToConeFilletAndBase)
+{
+  // Solid of revolution by Simpson's rule on the profile, the fillet in its angle.
+  auto parameters = pillar();
+  const PillarGeometry &g = parameters.pillar;
+  const double rc = g.foot_radius(), rho = g.fillet_radius;
+  double pillar_volume = 0.;
+  const int n = 2000;
+  const auto add = [&](const double z0, const double z1, const double r0, const double rm, const double r1)
+  { pillar_volume += pi * (z1 - z0) / 6. * (r0 * r0 + 4. * rm * rm + r1 * r1); };
+  const auto height = [&](const double angle) { return rho * (1. - std::sin(angle)); };
+  for (int k = 0; k < n; ++k)
+  {
+    const double a = pi / 2. + (g.taper - pi / 2.) * k / n, b = pi / 2. + (g.taper - pi / 2.) * (k + 1) / n;
+    const double middle = 0.5 * (height(a) + height(b));
+    add(height(a), height(b), rc - rho * std::cos(a), g.radius_at(middle), rc - rho * std::cos(b));
+  }
+  const double zt = g.fillet_top();
+  add(zt, g.height, g.radius_at(zt), g.radius_at(0.5 * (zt + g.height)), g.top_radius);
+  const double exact = pillar_volume + g.base_width * g.base_width * g.base_height;
+  double previous = 0.;
+  for (unsigned refinements = 0; refinements < 3; ++refinements)
+  {
+    parameters.refinements = refinements;
+    const auto mesh = make_mesh(MPI_COMM_WORLD, parameters);
+    const double error = std::abs(volume(*mesh, 2) / exact - 1.);
+    EXPECT_LT(error, refinements == 0 ? 1e-3 : previous / 8.); // fourth order in the cell size
+    previous = error;
+    const auto areas = boundary_areas(*mesh, 2);
+    ASSERT_EQ(areas.size(), 5u);
+    EXPECT_NEAR(areas.at(1), 400. * 400., 1e-6);
+    EXPECT_NEAR(areas.at(2) / (pi * 1e4), 1., 1e-3);
+    EXPECT_NEAR(areas.at(3) / (400. * 400. - pi * rc * rc), 1., 2e-3);
+    EXPECT_NEAR(areas.at(4), 4. * 400. * 120., 1e-6);
+  }
+}
+
+TEST(Mesh, RefinedPillarKeepsItsProfile)
+{
+  for (const double rho : {0., 40.})
+  {
+    auto parameters = pillar();
+    parameters.pillar.fillet_radius = rho;
+    parameters.refinements = 2;
+    const auto mesh = make_mesh(MPI_COMM_WORLD, parameters);
+    const PillarGeometry &g = parameters.pillar;
+    for (const auto &facet : boundary_facets(*mesh))
+    {
+      for (const auto &x : facet.vertices)
+      {
+        const double r = std::hypot(x[0] - 10., x[1] + 20.), z = x[2] - 150.;
+        if (facet.boundary == 0 && z > 1e-9)
+        {
+          EXPECT_NEAR(r, g.radius_at(z), 1e-6);
+        }
+        else if (facet.boundary == 3 || facet.boundary == 0)
+        {
+          EXPECT_NEAR(z, 0., 1e-9);
+          EXPECT_GT(r, g.foot_radius() - 1e-6);
+        }
+      }
+    }
+  }
+}
+
+TEST(Mesh, CantileverIsABeamOnABlockWithNamedFaces)
+{
+  MeshParameters p;
+  p.shape = MeshParameters::Shape::cantilever;
+  p.size = {400., 80., 60.};
+  p.block = {150., 200., 180.};
+  p.subdivisions = {8, 2, 2};
+  const auto mesh = make_mesh(MPI_COMM_WORLD, p);
+  EXPECT_NEAR(volume(*mesh), 400. * 80. * 60. + 150. * 200. * 180., 1e-4);
+  const auto areas = boundary_areas(*mesh);
+  EXPECT_NEAR(areas.at(0), 80. * 60., 1e-6);
+  EXPECT_NEAR(areas.at(1), 200. * 180., 1e-6);
+  EXPECT_NEAR(areas.at(2), 400. * 60., 1e-6);
+  EXPECT_NEAR(areas.at(5), 400. * 80., 1e-6);
+  EXPECT_NEAR(areas.at(6), 2. * 150. * (200. + 180.) + 200. * 180. - 80. * 60., 1e-6);
+  EXPECT_EQ(boundary_id_of(boundary_names(p), "beam-z+"), 5u);
+}
+
 TEST(Mesh, GmshFilesOfBothFormatsKeepTheirGroupsAndUnit)
 {
   const auto bar = make_mesh(MPI_COMM_WORLD, mesh_file("bar.msh"));
@@ -187,6 +280,12 @@ TEST(Mesh, SenselessParametersAreRefused)
   EXPECT_NE(error(box({1., 1., 1.}, {1, 0, 1})).find("at least one cell"), std::string::npos);
   EXPECT_NE(error(cylinder(-1., 1., 4, 1)).find("radius"), std::string::npos);
   EXPECT_NE(error(cylinder(1., 1., 2, 1)).find("3 cells"), std::string::npos);
+  auto wide = pillar();
+  wide.pillar.base_width = 250.;
+  EXPECT_NE(error(wide).find("250 nm wide"), std::string::npos);
+  auto tall = pillar();
+  tall.pillar.fillet_radius = 400.;
+  EXPECT_NE(error(tall).find("fillet of radius 400"), std::string::npos);
   EXPECT_NE(error(mesh_file("bar.msh", 0.)).find("bar.msh"), std::string::npos);
 }
 

@@ -136,7 +136,7 @@ struct PointForce
   }
 };
 
-/// Field made of two functions.
+/// Field of one source made of two functions.
 class FunctionField : public TractionField
 {
 public:
@@ -150,13 +150,20 @@ public:
   {
   }
 
-  double smooth_length(const Point &centre, double radius) const override { return length_of(centre, radius); }
+  Stress at(const Point &x) const { return stress_of(x); }
 
-  void stress(const std::vector<Point> &points, std::vector<Stress> &values) const override
+  unsigned n_sources() const override { return 1; }
+  void smooth_lengths(const Point &centre, double radius, std::span<const unsigned> /*sources*/,
+                      std::span<double> lengths) const override
+  {
+    lengths[0] = length_of(centre, radius);
+  }
+  void add_stress(std::span<const unsigned> /*sources*/, std::span<const Point> points,
+                  std::span<Stress> values) const override
   {
     for (std::size_t i = 0; i < points.size(); ++i)
     {
-      values[i] = stress_of(points[i]);
+      values[i] += stress_of(points[i]);
     }
   }
 

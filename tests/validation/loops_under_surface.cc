@@ -1,13 +1,7 @@
 // Triangular loops under a free plane: the correction stress against values from Mindlin's half-space tensor
 // (tests/data/halfspace_loops.json), in a box graded towards the loop and many times larger than its depth.
-#include "coupling/convert.h"
-#include "coupling/dislocation_tractions.h"
-#include "dd/forces/line_system.h"
-#include "fem/elastic_problem.h"
-#include "support.h"
+#include "image_field.h"
 
-#include <deal.II/distributed/tria.h>
-#include <deal.II/grid/grid_generator.h>
 #include <nlohmann/json.hpp>
 
 #include <fstream>
@@ -17,39 +11,6 @@ using namespace ddfem::validation;
 
 namespace
 {
-using Mesh = dealii::parallel::distributed::Triangulation<3>;
-
-/// Element sizes from the fine middle of half-width @p fine outwards to @p half_width, growing by 2.
-std::vector<double> graded(const double h, const double fine, const double half_width)
-{
-  std::vector<double> sizes(static_cast<std::size_t>(std::lround(fine / h)), h);
-  double x = fine, size = h;
-  while (x < half_width)
-  {
-    size *= 2;
-    sizes.push_back(size);
-    x += size;
-  }
-  return sizes;
-}
-
-/// Box z > 0 with its free surface at z = 0, element size @p h near the origin.
-std::unique_ptr<Mesh> graded_box(const double h)
-{
-  const auto half = graded(h, 3.0, 35), depth = graded(h, 6.0, 70);
-  std::vector<double> across(half.rbegin(), half.rend());
-  across.insert(across.end(), half.begin(), half.end());
-  double w = 0, d = 0;
-  for (const double s : half)
-    w += s;
-  for (const double s : depth)
-    d += s;
-  auto mesh = std::make_unique<Mesh>(MPI_COMM_WORLD);
-  dealii::GridGenerator::subdivided_hyper_rectangle(*mesh, {across, across, depth}, dealii::Point<3>(-w, -w, 0),
-                                                    dealii::Point<3>(w, w, d), true);
-  return mesh;
-}
-
 Vec3 vector_of(const nlohmann::json &j)
 {
   return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()};
@@ -65,25 +26,23 @@ double case_error(const nlohmann::json &test, const Mesh &mesh, const double dep
     corners.push_back(vector_of(v));
   add_line(network, corners, vector_of(test["b"]), {}, true, NodeConstraint::free);
   const LineSystem lines(m, network, nullptr, RayDirection::normal, nullptr, nullptr);
-  fem::ElasticProblem problem(mesh, {}, {m.mu, m.nu}, {});
-  problem.set_tractions(coupling::DislocationTractions(lines));
-  problem.solve(std::vector<dealii::Tensor<1, 3>>(problem.boundary_points().size()));
-  std::vector<dealii::Point<3>> points;
+  ImageField image(mesh, 2, {}, m);
+  image.solve(lines);
+  std::vector<Vec3> points;
   std::vector<std::array<double, 6>> expected;
   for (std::size_t k = 0; k < test["points"].size(); ++k)
     if (const Vec3 x = vector_of(test["points"][k]); x[2] > depth)
     {
-      points.push_back(coupling::to_point(x));
+      points.push_back(x);
       expected.push_back(test["image_stress"][k].get<std::array<double, 6>>());
     }
-  const auto stress = problem.stress_at(points);
+  const auto stress = image.stress(points);
   double error = 0, scale = 0;
   for (std::size_t k = 0; k < points.size(); ++k)
   {
-    const SymTensor computed = coupling::to_sym_tensor(stress[k]);
     for (std::size_t c = 0; c < 6; ++c)
     {
-      error = std::max(error, std::abs(computed[static_cast<Eigen::Index>(c)] - expected[k][c]));
+      error = std::max(error, std::abs(stress[k][static_cast<Eigen::Index>(c)] - expected[k][c]));
       scale = std::max(scale, std::abs(expected[k][c]));
     }
   }
@@ -104,7 +63,7 @@ int main(int argc, char **argv)
         const auto reference = nlohmann::json::parse(in);
         const auto study = [&](const double h, const double depth, const std::vector<std::size_t> &cases)
         {
-          const auto mesh = graded_box(h);
+          const auto mesh = half_space_mesh(h, 3);
           double worst = 0;
           for (const std::size_t k : cases)
           {

@@ -176,7 +176,7 @@ NodeIndex perform_merge(TopologyContext &context, const MergePlan &plan)
   if (both_on_surface) // between two times of the step they have moved along a chord of the surface
     target = project_to_surface(*context.shape, target, n.normal(n.connected_segments(kept)[0])).value_or(target);
   move_node(context, kept, target);
-  move_node(context, gone, plan.ends[1].target);
+  move_node(context, gone, plan.ends[1].target + (target - plan.ends[0].target));
   for (const NodeIndex i : {kept, gone})
   {
     context.remaining[i.value].setZero();

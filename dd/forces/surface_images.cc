@@ -1,0 +1,213 @@
+#include "dd/forces/surface_images.h"
+
+#include "dd/elasticity/distance.h"
+#include "dd/elasticity/triangle_displacement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace ddfem
+{
+namespace
+{
+/// Positions closer than this are one node; far below a core radius, far above rounding, nm.
+constexpr double same_place = 1e-6;
+/// Depth of a node that lies on a face, nm: well above what the projection onto the surface leaves.
+constexpr double on_face = 1e-3;
+
+} // namespace
+
+/// Net Burgers vectors that arrive at the ends of the lines with an image, by position.
+class SurfaceImages::NodeFluxes
+{
+public:
+  struct Flux
+  {
+    Vec3 position, burgers;
+  };
+
+  void add(const Vec3 &x, const Vec3 &b)
+  {
+    Key key;
+    for (std::size_t c = 0; c < 3; ++c)
+      key[c] = std::llround(x[static_cast<Eigen::Index>(c)] / same_place);
+    const auto [entry, is_new] = fluxes.try_emplace(key, Flux{x, Vec3::Zero()});
+    entry->second.burgers += b;
+  }
+
+  template <typename Visit> void for_each_open_end(Visit &&visit) const
+  {
+    constexpr double closed = 1e-9; // nm
+    for (const auto &[key, flux] : fluxes)
+      if (flux.burgers.norm() > closed)
+        visit(flux);
+  }
+
+private:
+  using Key = std::array<long long, 3>;
+  std::map<Key, Flux> fluxes;
+};
+
+SymTensor SurfaceImages::RayTurn::stress(const Vec3 &x) const
+{
+  return ray_stress(medium, x, origin, -Vec3::UnitZ(), burgers) - ray_stress(medium, x, origin, direction, burgers);
+}
+
+Vec3 SurfaceImages::RayTurn::displacement(const Vec3 &x) const
+{
+  return triangle_displacement(medium.nu, x, LoopVertex::at(origin), LoopVertex::towards(-Vec3::UnitZ()),
+                               LoopVertex::towards(direction), burgers);
+}
+
+double SurfaceImages::RayTurn::distance(const Vec3 &x) const
+{
+  return std::sqrt(std::min(distance_point_ray(x, origin, direction).squared,
+                            distance_point_ray(x, origin, -Vec3::UnitZ()).squared));
+}
+
+SurfaceImages::SurfaceImages(const LineSystem &lines, const std::span<const ImagePlane> image_planes,
+                             const ImageSettings &settings)
+    : planes_of_line(lines.lines().size(), 0), planes_of_ray(lines.rays().size(), 0)
+{
+  if (!(settings.depth > 0))
+    return;
+  for (const ImagePlane &p : image_planes.first(std::min<std::size_t>(image_planes.size(), 64)))
+  {
+    Frame frame{p.face_id, p.point, p.outward, Mat3::Zero()};
+    frame.to_local.row(0) = p.outward.unitOrthogonal();
+    frame.to_local.row(2) = -p.outward;
+    frame.to_local.row(1) = frame.to_local.row(2).cross(frame.to_local.row(0));
+    planes.push_back(frame);
+    add_plane(lines, planes.size() - 1, settings);
+  }
+}
+
+void SurfaceImages::add_plane(const LineSystem &lines, const std::size_t plane, const ImageSettings &settings)
+{
+  NodeFluxes fluxes;
+  add_lines(lines, plane, settings, fluxes);
+  add_rays(lines, plane, fluxes);
+  add_legs(lines, plane, fluxes);
+}
+
+void SurfaceImages::add_lines(const LineSystem &lines, const std::size_t plane, const ImageSettings &settings,
+                              NodeFluxes &fluxes)
+{
+  const Frame &frame = planes[plane];
+  for (std::size_t i = 0; i < lines.lines().size(); ++i)
+  {
+    const StraightLine &line = lines.lines()[i];
+    const Vec3 start = frame.local(line.start), end = frame.local(line.end);
+    if (std::min(start[2], end[2]) >= settings.depth)
+      continue;
+    planes_of_line[i] |= PlaneSet{1} << plane;
+    pieces.push_back(
+        {plane, SegmentImage(lines.medium(), start, end, frame.to_local * line.burgers, settings.tolerance)});
+    fluxes.add(line.start, -line.burgers);
+    fluxes.add(line.end, line.burgers);
+  }
+}
+
+void SurfaceImages::add_rays(const LineSystem &lines, const std::size_t plane, NodeFluxes &fluxes)
+{
+  const Frame &frame = planes[plane];
+  for (std::size_t i = 0; i < lines.rays().size(); ++i)
+  {
+    const VirtualRay &ray = lines.rays()[i];
+    const Vec3 origin = frame.local(ray.origin), burgers = frame.to_local * ray.burgers;
+    if (origin[2] > on_face || ray.direction.dot(frame.outward) <= 0)
+      continue;
+    planes_of_ray[i] |= PlaneSet{1} << plane;
+    const Vec3 foot(origin[0], origin[1], 0);
+    pieces.push_back({plane, PiercingImage(lines.medium(), foot, burgers)});
+    if (ray.direction.dot(frame.outward) < 1 - 1e-12)
+      pieces.push_back({plane, RayTurn{lines.medium(), foot, frame.to_local * ray.direction, burgers}});
+    fluxes.add(ray.origin, -ray.burgers);
+  }
+}
+
+void SurfaceImages::add_legs(const LineSystem &lines, const std::size_t plane, const NodeFluxes &fluxes)
+{
+  const Frame &frame = planes[plane];
+  fluxes.for_each_open_end(
+      [&](const NodeFluxes::Flux &flux)
+      {
+        const Vec3 x = frame.local(flux.position);
+        pieces.push_back({plane, LegImage(lines.medium(), x, frame.to_local * flux.burgers)});
+        legs.push_back({{flux.position, -frame.outward, -flux.burgers}, frame.face_id});
+      });
+}
+
+bool SurfaceImages::is_freed(const std::vector<PlaneSet> &sets, const std::size_t i, const int face_id) const
+{
+  if (i >= sets.size() || sets[i] == 0)
+    return false;
+  for (std::size_t p = 0; p < planes.size(); ++p)
+    if ((sets[i] >> p & 1U) != 0 && planes[p].face_id == face_id)
+      return true;
+  return false;
+}
+
+/// Sum over pieces number(0) ... number(n - 1); those of one plane are added up in its frame.
+template <typename PieceNumber>
+SymTensor SurfaceImages::sum_of_pieces(const std::size_t n, PieceNumber &&number, const Vec3 &x) const
+{
+  SymTensor total = SymTensor::Zero();
+  for (std::size_t i = 0; i < n;)
+  {
+    const std::size_t plane = pieces[number(i)].plane;
+    const Vec3 local = planes[plane].local(x);
+    SymTensor sum = SymTensor::Zero();
+    for (; i < n && pieces[number(i)].plane == plane; ++i)
+      sum += std::visit([&](const auto &field) { return field.stress(local); }, pieces[number(i)].field);
+    total += planes[plane].to_sample(sum);
+  }
+  return total;
+}
+
+SymTensor SurfaceImages::stress(const Vec3 &x) const
+{
+  return sum_of_pieces(
+      pieces.size(), [](const std::size_t i) { return i; }, x);
+}
+
+SymTensor SurfaceImages::stress(const std::span<const std::size_t> images, const Vec3 &x) const
+{
+  return sum_of_pieces(
+      images.size(), [&](const std::size_t i) { return images[i]; }, x);
+}
+
+std::vector<SymTensor> SurfaceImages::stress(const std::span<const Vec3> points) const
+{
+  std::vector<SymTensor> values(points.size());
+#pragma omp parallel for schedule(dynamic, 16)
+  for (std::size_t k = 0; k < points.size(); ++k)
+    values[k] = stress(points[k]);
+  return values;
+}
+
+std::vector<Vec3> SurfaceImages::displacement(const std::span<const Vec3> points) const
+{
+  std::vector<Vec3> values(points.size(), Vec3::Zero());
+#pragma omp parallel for schedule(dynamic, 16)
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (const Piece &piece : pieces)
+    {
+      const Frame &frame = planes[piece.plane];
+      const Vec3 x = frame.local(points[k]);
+      values[k] += frame.to_local.transpose() *
+                   std::visit([&](const auto &field) { return field.displacement(x); }, piece.field);
+    }
+  return values;
+}
+
+double SurfaceImages::image_distance(const std::size_t image, const Vec3 &x) const
+{
+  const Piece &piece = pieces[image];
+  const Vec3 local = planes[piece.plane].local(x);
+  return std::visit([&](const auto &field) { return field.distance(local); }, piece.field);
+}
+} // namespace ddfem

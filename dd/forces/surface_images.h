@@ -1,0 +1,120 @@
+// Analytic images of the lines near flat free faces of the grain.
+//
+// Finite elements cannot resolve the correction field within about three elements of the surface. There, the exact
+// image field of each segment under the plane of a near face is added to the infinite-body field, and with it the
+// superposition carries no traction on that face any more: what is left for the finite elements is smooth.
+//
+// A plane must have the whole grain on one side, so that the mirror images lie outside. Where a line leaves the range of
+// the images (at `depth`, or through another face) the flux of its Burgers vector is closed by a leg into the depth
+// (half_space_image.h), whose image is added too, so that the sum of the images is in equilibrium in the whole grain. The
+// tractions of these legs remain on the face, with opposite sign.
+#pragma once
+
+#include "dd/elasticity/half_space_image.h"
+#include "dd/forces/line_system.h"
+
+#include <cstddef>
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace ddfem
+{
+/// Plane of a flat traction-free face.
+struct ImagePlane
+{
+  int face_id;
+  Vec3 point;   ///< on the plane, nm
+  Vec3 outward; ///< unit normal; the grain lies on the other side
+};
+
+struct ImageSettings
+{
+  double depth = 0;        ///< segments with an end nearer to a plane than this have an image, nm; 0: no images
+  double tolerance = 1e-4; ///< relative error of the image of a segment
+};
+
+/// Image fields of one state of the lines. Adding them to the infinite field of the same lines leaves, on each plane,
+/// only the tractions of segments without an image and of minus the legs.
+class SurfaceImages
+{
+public:
+  SurfaceImages() = default;
+  SurfaceImages(const LineSystem &lines, std::span<const ImagePlane> planes, const ImageSettings &settings);
+
+  /// Stress at a point of the grain, MPa.
+  SymTensor stress(const Vec3 &x) const;
+  /// The same at many points, threaded; independent of the number of threads.
+  std::vector<SymTensor> stress(std::span<const Vec3> points) const;
+  /// Displacement at points of the grain, nm, single-valued; up to a rigid translation where lines pierce a face.
+  std::vector<Vec3> displacement(std::span<const Vec3> points) const;
+
+  bool empty() const { return pieces.empty(); }
+
+  /// Whether the images cancel the tractions of a line (ray), numbered as in LineSystem, on a face.
+  bool is_freed_of_line(std::size_t line, int face_id) const { return is_freed(planes_of_line, line, face_id); }
+  bool is_freed_of_ray(std::size_t ray, int face_id) const { return is_freed(planes_of_ray, ray, face_id); }
+
+  std::size_t n_images() const { return pieces.size(); }
+  int face_of_image(std::size_t image) const { return planes[pieces[image].plane].face_id; }
+  /// Stress of some of the images, in ascending order, MPa.
+  SymTensor stress(std::span<const std::size_t> images, const Vec3 &x) const;
+  /// Lower bound of the distance of a point of the grain from the singularities of one image, nm.
+  double image_distance(std::size_t image, const Vec3 &x) const;
+
+  /// Legs whose tractions remain, with the sign with which they do: rays with the face that they act on.
+  struct RemainingLeg
+  {
+    VirtualRay ray;
+    int face_id;
+  };
+  const std::vector<RemainingLeg> &remaining_legs() const { return legs; }
+
+private:
+  /// Local frame of a plane: z into the grain, origin on the plane.
+  struct Frame
+  {
+    int face_id;
+    Vec3 point, outward;
+    Mat3 to_local;
+    Vec3 local(const Vec3 &x) const { return inside(to_local * (x - point)); }
+    static Vec3 inside(Vec3 x)
+    {
+      x[2] = x[2] < 0 ? 0 : x[2];
+      return x;
+    }
+    SymTensor to_sample(const SymTensor &s) const
+    {
+      return symmetric_part(to_local.transpose() * to_matrix(s) * to_local);
+    }
+  };
+  /// What turns a virtual ray into the one along the normal, which PiercingImage supposes.
+  struct RayTurn
+  {
+    IsotropicMedium medium;
+    Vec3 origin, direction, burgers; ///< of the virtual ray
+    SymTensor stress(const Vec3 &x) const;
+    Vec3 displacement(const Vec3 &x) const;
+    double distance(const Vec3 &x) const;
+  };
+  struct Piece
+  {
+    std::size_t plane;
+    std::variant<SegmentImage, LegImage, PiercingImage, RayTurn> field;
+  };
+  using PlaneSet = std::uint64_t; // one bit for each plane
+
+  class NodeFluxes;
+  template <typename PieceNumber> SymTensor sum_of_pieces(std::size_t n, PieceNumber &&number, const Vec3 &x) const;
+  void add_plane(const LineSystem &lines, std::size_t plane, const ImageSettings &settings);
+  void add_lines(const LineSystem &lines, std::size_t plane, const ImageSettings &settings, NodeFluxes &fluxes);
+  void add_rays(const LineSystem &lines, std::size_t plane, NodeFluxes &fluxes);
+  void add_legs(const LineSystem &lines, std::size_t plane, const NodeFluxes &fluxes);
+  bool is_freed(const std::vector<PlaneSet> &sets, std::size_t i, int face_id) const;
+
+  std::vector<Frame> planes;
+  std::vector<Piece> pieces; // sorted by plane
+  std::vector<RemainingLeg> legs;
+  std::vector<PlaneSet> planes_of_line, planes_of_ray;
+};
+} // namespace ddfem

@@ -1,0 +1,37 @@
+// Random loops in random grains, moved until they have left.
+#include "tests/dd/topology/surface_loops.h"
+
+#include <gtest/gtest.h>
+
+namespace ddfem
+{
+namespace
+{
+class RandomLoopsIn : public testing::TestWithParam<int>
+{
+};
+
+TEST_P(RandomLoopsIn, ArriveSlideAndLeaveWithoutLosingFluxOrArea)
+{
+  std::size_t left = 0, exits = 0;
+  for (std::uint64_t k = 0; k < 43; ++k)
+  {
+    const DrawResult r =
+        run_draw(100000 * n_grain_kinds + k * n_grain_kinds + static_cast<std::uint64_t>(GetParam()), 200);
+    EXPECT_EQ(r.failure, "");
+    left += r.left ? 1 : 0;
+    exits += r.counts.surface_exits;
+  }
+  EXPECT_GT(left, 10U);
+  EXPECT_GT(exits, 300U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Grains, RandomLoopsIn, testing::Range(0, n_grain_kinds),
+                         [](const testing::TestParamInfo<int> &parameter)
+                         {
+                           std::string name = name_of(static_cast<GrainKind>(parameter.param));
+                           std::erase(name, ' ');
+                           return name;
+                         });
+} // namespace
+} // namespace ddfem
