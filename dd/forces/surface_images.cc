@@ -101,7 +101,8 @@ void SurfaceImages::add_lines(const LineSystem &lines, const std::size_t plane, 
   {
     const StraightLine &line = lines.lines()[i];
     const Vec3 start = frame.local(line.start), end = frame.local(line.end);
-    if (std::min(start[2], end[2]) >= settings.depth)
+    const double outside = -std::min(frame.unlimited(line.start)[2], frame.unlimited(line.end)[2]);
+    if (std::min(start[2], end[2]) >= settings.depth || outside > on_face)
       continue;
     planes_of_line[i] |= PlaneSet{1} << plane;
     pieces.push_back(

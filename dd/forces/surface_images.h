@@ -30,8 +30,9 @@ struct ImagePlane
 
 struct ImageSettings
 {
-  double depth = 0;        ///< segments with an end nearer to a plane than this have an image, nm; 0: no images
-  double tolerance = 1e-4; ///< relative error of the image of a segment
+  /// Segments with an end nearer to a plane than this have an image, nm; 0: no images. Lines outside have none.
+  double depth = 0;
+  double tolerance = 1e-6; ///< relative error of the image of a segment; balance and reactions are as good as this
 };
 
 /// Image fields of one state of the lines. Adding them to the infinite field of the same lines leaves, on each plane,
@@ -77,11 +78,14 @@ private:
     int face_id;
     Vec3 point, outward;
     Mat3 to_local;
-    Vec3 local(const Vec3 &x) const { return inside(to_local * (x - point)); }
-    static Vec3 inside(Vec3 x)
+    /// Negative z: outside.
+    Vec3 unlimited(const Vec3 &x) const { return to_local * (x - point); }
+    /// Rounding must not put a point of the surface outside.
+    Vec3 local(const Vec3 &x) const
     {
-      x[2] = x[2] < 0 ? 0 : x[2];
-      return x;
+      Vec3 y = unlimited(x);
+      y[2] = y[2] < 0 ? 0 : y[2];
+      return y;
     }
     SymTensor to_sample(const SymTensor &s) const
     {

@@ -57,11 +57,11 @@ public:
       const std::vector<Vec3> to = loop_points(Vec3(72 + 14 * s, 66, 140 + 20 * s), 30 + 10 * s);
       const SweptArea area = area_between(points, to);
       const std::vector<Vec3> centres = swept_centres(area, &grain.shape());
-      const double before = work_on_area(area, grain.correction_stress(centres));
+      const double before = work_on_area(area, grain.stress_of_elements(centres));
       grain.add_swept(area);
       place(to);
       grain.solve(lines(), 0.2 + 0.1 * s);
-      const double mean = 0.5 * (before + work_on_area(area, grain.correction_stress(centres)));
+      const double mean = 0.5 * (before + work_on_area(area, grain.stress_of_elements(centres)));
       balance.add(grain.boundary_state(), {.total = mean, .external = mean}, MPI_COMM_WORLD);
     }
   }
