@@ -77,7 +77,6 @@ private:
     p.clamped = clamped;
     p.image_depth = image_depth;
     p.elasticity.relative_tolerance = 1e-10;
-    p.image_depth = 0; // images make the error so small that its order does not show
     p.reference = ReferenceState::perfect_crystal;
     return p;
   }
