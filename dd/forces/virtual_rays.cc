@@ -68,8 +68,8 @@ Vec3 ray_direction(const GrainShape &shape, const RayDirection rule, const Vec3 
 {
   const Vec3 normal = shape.outward_normal(x);
   Vec3 wanted = rule == RayDirection::normal
-                          ? normal
-                          : Vec3((x - 0.5 * (shape.lower_corner() + shape.upper_corner())).normalized());
+                    ? normal
+                    : Vec3((x - 0.5 * (shape.lower_corner() + shape.upper_corner())).normalized());
   if (shape.is_convex())
     return wanted;
   // Within a step surface nodes move along chords, which may pass below the surface.

@@ -171,8 +171,7 @@ std::optional<Vec3> way_back(const TopologyContext &context, const NodeIndex i)
   const double distance = shape.signed_distance(x);
   constexpr double farthest =
       4; // times the distance: the plane meets the surface at more than a quarter of a right angle
-  if (auto y = project_to_surface(shape, x, common_normal(network, i));
-      y && (*y - x).norm() < farthest * distance)
+  if (auto y = project_to_surface(shape, x, common_normal(network, i)); y && (*y - x).norm() < farthest * distance)
     return y;
   for (const SegmentIndex s : network.connected_segments(i))
     if (const Vec3 &q = network.position(network.other_end(s, i)); shape.signed_distance(q) < 0)
