@@ -88,7 +88,6 @@ FiniteGrain::FiniteGrain(const GrainParameters &grain_parameters, const Isotropi
     throw InputError(std::string("Domain: ") + e.what());
   }
   find_platens(parameters);
-  find_image_planes();
   const bool clamped = parameters.clamped;
   problem = std::make_unique<fem::ElasticProblem>(
       *mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu},
@@ -169,11 +168,11 @@ void FiniteGrain::find_platens(const GrainParameters &p)
   platen_sign = high.sign;
   gauge_length = std::abs(high.position - low.position);
   describe_platen(facets);
+  find_image_planes(facets);
 }
 
-void FiniteGrain::find_image_planes()
+void FiniteGrain::find_image_planes(const std::vector<PolyhedronShape::Facet> &facets)
 {
-  const auto facets = boundary_polygons(*mesh);
   const auto is_held = [](const std::array<bool, 3> &components)
   { return components[0] || components[1] || components[2]; };
   std::set<int> held;

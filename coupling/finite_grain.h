@@ -98,7 +98,7 @@ private:
   void set_unit_response();
   std::vector<dealii::Tensor<1, 3>> prescribed_at_rest() const;
   double platen_load() const;
-  void find_image_planes();
+  void find_image_planes(const std::vector<PolyhedronShape::Facet> &facets);
   void update_images(const LineSystem &lines);
   void add_images(const std::vector<Vec3> &points, std::vector<SymTensor> &stress) const;
 

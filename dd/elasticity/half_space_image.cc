@@ -57,7 +57,7 @@ struct StressSums
   double xx = 0, yy = 0, xy = 0;                      ///< phi_,ij
   double xxz = 0, yyz = 0, xyz = 0, xzz = 0, yzz = 0; ///< phi_,ijz, phi_,izz
 
-  /// w d_c f for a function f with tangential third derivatives (q, r); third with z: those of its z-derivative.
+  /// d_c f for a function f with tangential third derivatives (q, r); third with z: those of its z-derivative.
   void add_tangential(const Vec3 &x, const Vec3 &c, const double q, const double r, const double qz, const double rz)
   {
     const double cx = c[0] * x[0] + c[1] * x[1];
@@ -144,7 +144,8 @@ void add_element(DisplacementSums &sums, const Vec3 &x, const Vec3 &c, const Vec
   sums.zz += weight * (-cx * k.v3 + 3 * ex * z * k.v5 + ez * (3 * z * z * k.v5 - k.v3));
 }
 
-/// phi of the leg is mu/(2 pi) d_c { 2 nu/(1-nu) chi - depth/(1-nu) psi }, chi_,z = psi, c = (b_y, -b_x).
+/// phi of the leg is mu/(2 pi) d_c { 2 nu/(1-nu) chi - depth/(1-nu) psi - a^2/(2 (1-nu)) Lambda }, chi_,z = psi,
+/// c = (b_y, -b_x).
 Vec3 leg_direction(const Vec3 &b)
 {
   return {b[1], -b[0], 0.0};
@@ -209,11 +210,11 @@ double SegmentImage::distance(const Vec3 &x) const
 }
 
 LegImage::LegImage(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &b)
-    : origin(mirrored(x)), mirror(medium, origin, outward, mirror_burgers(b)), c(leg_direction(b)), depth(x[2]),
-      mu(medium.mu), nu(medium.nu)
+    : origin(mirrored(x)), mirror(medium, origin, outward, mirror_burgers(b)), c(leg_direction(b)),
+      of_chi(2 * medium.nu / (1 - medium.nu)), of_psi(-x[2] / (1 - medium.nu)), mu(medium.mu), nu(medium.nu)
 {
   constexpr double many_core_radii = 10;
-  const bool deep = depth > many_core_radii * medium.a;
+  const bool deep = x[2] > many_core_radii * medium.a;
   a2 = deep ? 0.0 : medium.a * medium.a;
   of_lambda = deep ? -0.5 * medium.a * medium.a / (1 - nu) : 0.0;
 }
@@ -222,7 +223,6 @@ SymTensor LegImage::stress(const Vec3 &x) const
 {
   const Vec3 r = x - origin;
   const Radii k(r, a2);
-  const double of_chi = 2 * nu / (1 - nu), of_psi = -depth / (1 - nu);
   StressSums sums;
   // chi_,ijk has q = -s^2/2, r = s^3/Rb.
   sums.add_tangential(r, of_chi * c, -0.5 * k.s * k.s, k.v * k.s * k.s * k.s, k.psi_q, k.psi_r);
@@ -239,7 +239,7 @@ Vec3 LegImage::displacement(const Vec3 &x) const
 {
   const Vec3 r = x - origin;
   const Radii k(r, a2);
-  const double of_chi = 2 * nu / (1 - nu), of_psi = -depth / (1 - nu), cx = c[0] * r[0] + c[1] * r[1];
+  const double cx = c[0] * r[0] + c[1] * r[1];
   // The unit of length in the logarithm is a rigid translation.
   const double chi_p = -0.5 * (r[2] * k.s - std::log(k.s));
   const auto tangential = [&](const int i)

@@ -81,7 +81,8 @@ private:
   Vec3 origin; // of the mirror image
   RayStressField mirror;
   Vec3 c;
-  double depth, a2, of_lambda, mu, nu;
+  double of_chi, of_psi, of_lambda; // coefficients in phi: 1, nm, nm^2
+  double a2, mu, nu;
 };
 
 /// Image field of the whole line that pierces the surface at @p x (z = 0) along its normal, less the parts that

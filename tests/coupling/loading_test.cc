@@ -1,6 +1,7 @@
 // Runs of small grains under stages, read back from history.csv.
 #include "coupling/simulation.h"
 #include "dd/elasticity/segment_energy.h"
+#include "tests/support/history.h"
 
 #include <gtest/gtest.h>
 
@@ -15,28 +16,8 @@ namespace ddfem::coupling
 {
 namespace
 {
-using Columns = std::map<std::string, std::vector<double>>;
-
-Columns read_history(const std::string &file)
-{
-  std::ifstream in(file);
-  std::string line, cell;
-  std::getline(in, line);
-  std::vector<std::string> names;
-  for (std::istringstream header(line); std::getline(header, cell, ',');)
-    names.push_back(cell);
-  Columns columns;
-  while (std::getline(in, line))
-  {
-    std::istringstream row(line);
-    for (const std::string &name : names)
-    {
-      std::getline(row, cell, ',');
-      columns[name].push_back(std::stod(cell));
-    }
-  }
-  return columns;
-}
+using test::Columns;
+using test::read_history;
 
 /// An aluminium box of 400 x 400 x 900 nm with one source of 200 nm whose slip plane does not meet the platens.
 const std::vector<std::string> pillar{"Crystal/Direction along x=1 2 -1",

@@ -1,52 +1,29 @@
 // Triangular loops under a free plane: the correction stress against values from Mindlin's half-space tensor
 // (tests/data/halfspace_loops.json), in a box graded towards the loop and many times larger than its depth.
 #include "image_field.h"
-
-#include <nlohmann/json.hpp>
-
-#include <fstream>
+#include "reference_loops.h"
 
 using namespace ddfem;
 using namespace ddfem::validation;
 
 namespace
 {
-Vec3 vector_of(const nlohmann::json &j)
-{
-  return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()};
-}
-
 /// Largest error of a component over the points deeper than @p depth, relative to the largest image component there.
-double case_error(const nlohmann::json &test, const Mesh &mesh, const double depth)
+double case_error(const ReferenceLoop &loop, const Mesh &mesh, const double depth)
 {
-  const IsotropicMedium m{test["mu"].get<double>(), test["nu"].get<double>(), 0.01};
-  Network network;
-  std::vector<Vec3> corners;
-  for (const nlohmann::json &v : test["vertices"])
-    corners.push_back(vector_of(v));
-  add_line(network, corners, vector_of(test["b"]), {}, true, NodeConstraint::free);
-  const LineSystem lines(m, network, nullptr, RayDirection::normal, nullptr, nullptr);
+  const IsotropicMedium m{loop.mu, loop.nu, 0.01};
+  const LineSystem lines(m, loop.network, nullptr, RayDirection::normal, nullptr, nullptr);
   ImageField image(mesh, 2, {}, m);
   image.solve(lines);
   std::vector<Vec3> points;
   std::vector<std::array<double, 6>> expected;
-  for (std::size_t k = 0; k < test["points"].size(); ++k)
-    if (const Vec3 x = vector_of(test["points"][k]); x[2] > depth)
+  for (std::size_t k = 0; k < loop.points.size(); ++k)
+    if (loop.points[k][2] > depth)
     {
-      points.push_back(x);
-      expected.push_back(test["image_stress"][k].get<std::array<double, 6>>());
+      points.push_back(loop.points[k]);
+      expected.push_back(loop.image_stress[k]);
     }
-  const auto stress = image.stress(points);
-  double error = 0, scale = 0;
-  for (std::size_t k = 0; k < points.size(); ++k)
-  {
-    for (std::size_t c = 0; c < 6; ++c)
-    {
-      error = std::max(error, std::abs(stress[k][static_cast<Eigen::Index>(c)] - expected[k][c]));
-      scale = std::max(scale, std::abs(expected[k][c]));
-    }
-  }
-  return error / scale;
+  return largest_error(image.stress(points), expected);
 }
 } // namespace
 
@@ -59,15 +36,14 @@ int main(int argc, char **argv)
       argc, argv,
       [&](Report &report)
       {
-        std::ifstream in(DDFEM_TEST_DATA "/halfspace_loops.json");
-        const auto reference = nlohmann::json::parse(in);
+        const auto reference = reference_loops();
         const auto study = [&](const double h, const double depth, const std::vector<std::size_t> &cases)
         {
           const auto mesh = half_space_mesh(h, 3);
           double worst = 0;
           for (const std::size_t k : cases)
           {
-            const double error = case_error(reference["cases"][k], *mesh, depth);
+            const double error = case_error(reference[k], *mesh, depth);
             char row[120];
             std::snprintf(row, sizeof row,
                           "element size %5.3f, points deeper than %4.2f, loop %zu: largest error %8.4f %%", h, depth, k,

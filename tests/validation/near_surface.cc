@@ -3,10 +3,7 @@
 // analytic images of the lines under the face and without.
 #include "coupling/parameters.h"
 #include "image_field.h"
-
-#include <nlohmann/json.hpp>
-
-#include <fstream>
+#include "reference_loops.h"
 
 using namespace ddfem;
 using namespace ddfem::validation;
@@ -57,56 +54,28 @@ void straight_lines(Report &report, const double image_depth, const unsigned deg
     }
 }
 
-Vec3 vector_of(const nlohmann::json &j)
-{
-  return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()};
-}
-
 /// Largest error of a component at all points of a reference loop, relative to the largest image component, element size @p h.
-double loop_error(const nlohmann::json &test, const Mesh &mesh, const double image_depth)
+double loop_error(const ReferenceLoop &loop, const Mesh &mesh, const double image_depth)
 {
-  const IsotropicMedium m{test["mu"].get<double>(), test["nu"].get<double>(), 1e-3};
-  Network network;
-  std::vector<Vec3> corners;
-  for (const nlohmann::json &v : test["vertices"])
-    corners.push_back(vector_of(v));
-  add_line(network, corners, vector_of(test["b"]), {}, true, NodeConstraint::free);
-  const LineSystem lines(m, network, nullptr, RayDirection::normal, nullptr, nullptr);
+  const IsotropicMedium m{loop.mu, loop.nu, 1e-3};
+  const LineSystem lines(m, loop.network, nullptr, RayDirection::normal, nullptr, nullptr);
   ImageField image(mesh, 2, {}, m);
   image.solve(lines, {}, top, image_depth);
-  std::vector<Vec3> points;
-  for (const auto &x : test["points"])
-    points.push_back(vector_of(x));
-  const auto stress = image.stress(points);
-  double error = 0, scale = 0;
-  for (std::size_t k = 0; k < points.size(); ++k)
-  {
-    const SymTensor &computed = stress[k];
-    for (std::size_t c = 0; c < 6; ++c)
-    {
-      const double expected = test["image_stress"][k][c].get<double>();
-      error = std::max(error, std::abs(computed[static_cast<Eigen::Index>(c)] - expected));
-      scale = std::max(scale, std::abs(expected));
-    }
-  }
-  return error / scale;
+  return largest_error(image.stress(loop.points), loop.image_stress);
 }
 
 void loops(Report &report, const double image_depth)
 {
-  std::ifstream in(DDFEM_TEST_DATA "/halfspace_loops.json");
-  const auto reference = nlohmann::json::parse(in);
+  const auto reference = reference_loops();
   // Loops at depths of 2 to 3.5: half an element and more where elements are 4 long.
-  for (const double h : {4.0})
+  const double h = 4;
+  const auto mesh = half_space_mesh(h, 3 * h);
+  for (std::size_t k = 0; k < reference.size(); ++k)
   {
-    const auto mesh = half_space_mesh(h, 3 * h);
-    for (std::size_t k = 0; k < reference["cases"].size(); ++k)
-    {
-      char row[120];
-      std::snprintf(row, sizeof row, "loop %zu, elements of %3.1f, images within %3.1f h: error at all points", k, h,
-                    image_depth);
-      report.below(row, loop_error(reference["cases"][k], *mesh, image_depth * h), 0.02);
-    }
+    char row[120];
+    std::snprintf(row, sizeof row, "loop %zu, elements of %3.1f, images within %3.1f h: error at all points", k, h,
+                  image_depth);
+    report.below(row, loop_error(reference[k], *mesh, image_depth * h), 0.02);
   }
 }
 } // namespace

@@ -3,6 +3,7 @@
 // Burgers vector.
 #include "coupling/simulation.h"
 #include "support.h"
+#include "tests/support/history.h"
 
 #include <filesystem>
 #include <fstream>
@@ -15,28 +16,8 @@ using namespace ddfem::coupling;
 
 namespace
 {
-using Columns = std::map<std::string, std::vector<double>>;
-
-Columns read_history(const std::string &file)
-{
-  std::ifstream in(file);
-  std::string line, cell;
-  std::getline(in, line);
-  std::vector<std::string> names;
-  for (std::istringstream header(line); std::getline(header, cell, ',');)
-    names.push_back(cell);
-  Columns columns;
-  while (std::getline(in, line))
-  {
-    std::istringstream row(line);
-    for (const std::string &name : names)
-    {
-      std::getline(row, cell, ',');
-      columns[name].push_back(std::stod(cell));
-    }
-  }
-  return columns;
-}
+using test::Columns;
+using test::read_history;
 
 /// The pillar of examples/pillar_compression on a coarser mesh, loaded until just after the first complete slip event.
 InputDeck pillar()

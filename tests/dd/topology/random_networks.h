@@ -66,6 +66,19 @@ inline double noise(const std::uint64_t id, const std::uint64_t time, const std:
   return static_cast<double>((h ^ (h >> 31)) >> 11) * 0x1p-52 - 1;
 }
 
+/// Throws std::runtime_error naming a node outside the grain or a surface node inside it.
+inline void check_nodes_of_grain(const Network &network, const GrainShape &shape)
+{
+  for (const NodeIndex i : network.nodes())
+  {
+    const double outside = shape.signed_distance(network.position(i));
+    const bool surface = network.constraint(i) == NodeConstraint::surface;
+    if (outside > 1e-6 || (surface && outside < -1e-6))
+      throw std::runtime_error(name_of(network.constraint(i)) + (" node " + std::to_string(network.id(i))) + " lies " +
+                               std::to_string(outside) + " nm outside the grain");
+  }
+}
+
 /// Random displacements, in the glide planes, of size up to @p size: the Peach-Koehler force of a stress that changes at
 /// random every twenty steps, noise of each node, and a line tension that keeps the lines from crumpling.
 inline std::vector<Vec3> random_displacements(const Network &network, const std::uint64_t step, const double size,
@@ -193,14 +206,7 @@ struct RandomNetwork : TopologyFixture
     network.check_invariants(1e-5);
     if (!shape)
       return;
-    for (const NodeIndex i : network.nodes())
-    {
-      const double outside = shape->signed_distance(network.position(i));
-      const bool surface = network.constraint(i) == NodeConstraint::surface;
-      if (outside > 1e-6 || (surface && outside < -1e-6))
-        throw std::runtime_error(name_of(network.constraint(i)) + (" node " + std::to_string(network.id(i))) +
-                                 " lies " + std::to_string(outside) + " nm outside the grain");
-    }
+    check_nodes_of_grain(network, *shape);
   }
 };
 } // namespace ddfem

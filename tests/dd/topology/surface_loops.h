@@ -299,14 +299,7 @@ struct SurfaceLoops : TopologyFixture
   void check(const LineSystem &before) const
   {
     network.check_invariants(1e-5);
-    for (const NodeIndex i : network.nodes())
-    {
-      const double outside = shape->signed_distance(network.position(i));
-      const bool surface = network.constraint(i) == NodeConstraint::surface;
-      if (outside > 1e-6 || (surface && outside < -1e-6))
-        throw std::runtime_error(name_of(network.constraint(i)) + (" node " + std::to_string(network.id(i))) +
-                                 " lies " + std::to_string(outside) + " nm outside the grain");
-    }
+    check_nodes_of_grain(network, *shape);
     check_swept(before);
   }
 
