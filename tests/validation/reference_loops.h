@@ -29,8 +29,9 @@ inline Vec3 vector_of(const nlohmann::json &j)
 inline std::vector<ReferenceLoop> reference_loops()
 {
   std::ifstream in(DDFEM_TEST_DATA "/halfspace_loops.json");
+  const auto file = nlohmann::json::parse(in); // outlives the loop: a range over parse(in)["cases"] would dangle
   std::vector<ReferenceLoop> loops;
-  for (const auto &test : nlohmann::json::parse(in)["cases"])
+  for (const auto &test : file["cases"])
   {
     ReferenceLoop loop{test["mu"].get<double>(), test["nu"].get<double>(), {}, {}, {}};
     std::vector<Vec3> corners;
