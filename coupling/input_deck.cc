@@ -2,6 +2,8 @@
 #include "coupling/parameter_table.h"
 
 #include <boost/property_tree/json_parser.hpp>
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/patterns.h>
 
 #include <algorithm>
 #include <cctype>

@@ -1,5 +1,7 @@
 #include "coupling/parameter_table.h"
 
+#include <deal.II/base/patterns.h>
+
 #include <limits>
 
 namespace ddfem::coupling

@@ -1,12 +1,16 @@
 // Every entry of the input file: section, name, default, allowed values, unit, meaning.
 #pragma once
 
-#include <deal.II/base/parameter_handler.h>
-
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
+
+// Only the name: whoever reads parameters need not compile deal.II's parameter headers.
+namespace dealii::Patterns
+{
+class PatternBase;
+}
 
 namespace ddfem::coupling
 {

@@ -1,6 +1,7 @@
 #include "fem/cantilever.h"
 
 #include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/tria.h>
 
 #include <algorithm>
 #include <cmath>

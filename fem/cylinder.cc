@@ -3,6 +3,7 @@
 #include "fem/disc.h"
 
 #include <deal.II/grid/manifold_lib.h>
+#include <deal.II/grid/tria.h>
 
 #include <vector>
 

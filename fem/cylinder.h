@@ -1,6 +1,6 @@
 #pragma once
 
-#include <deal.II/grid/tria.h>
+#include "fem/triangulation.h"
 
 namespace ddfem::fem
 {
@@ -8,6 +8,6 @@ namespace ddfem::fem
 /// surrounded by rings, so that no cell has an angle above about 135 degrees. Boundary ids: side 0, bottom 1, top 2.
 /// The side carries the cylindrical manifold with id 0. `n_across` cells across a diameter (at least 3, hit within
 /// one), `n_along` along the axis.
-void make_cylinder(dealii::Triangulation<3> &triangulation, double radius, double height, unsigned n_across,
+void make_cylinder(SerialTriangulation &triangulation, double radius, double height, unsigned n_across,
                    unsigned n_along);
 } // namespace ddfem::fem

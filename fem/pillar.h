@@ -1,7 +1,8 @@
 #pragma once
 
+#include "fem/triangulation.h"
+
 #include <deal.II/base/point.h>
-#include <deal.II/grid/tria.h>
 
 namespace ddfem::fem
 {
@@ -38,10 +39,10 @@ struct PillarCells
 /// Serial mesh of the pillar; the centre of the bottom of the base is the origin. Boundary ids: side with the fillet 0, bottom
 /// 1, top 2, upper face of the base 3, sides of the base 4. Cells of the base outside the pillar are about as wide as high.
 /// The side carries its manifold, see attach_pillar_manifolds().
-void make_pillar(dealii::Triangulation<3> &triangulation, const PillarGeometry &geometry, const PillarCells &n);
+void make_pillar(SerialTriangulation &triangulation, const PillarGeometry &geometry, const PillarCells &n);
 
 /// Lets new points of the side of a pillar that stands at @p base (nm) lie on cone and fillet: coordinates (radius over that of
 /// the profile, angle, height) on the pillar and (radius, angle, height above the profile) on the lower half of the fillet.
-void attach_pillar_manifolds(dealii::Triangulation<3> &triangulation, const PillarGeometry &geometry,
+void attach_pillar_manifolds(SerialTriangulation &triangulation, const PillarGeometry &geometry,
                              const dealii::Point<3> &base);
 } // namespace ddfem::fem

@@ -3,13 +3,19 @@
 #include <memory>
 
 // Only the name: whoever passes a mesh on need not compile deal.II's mesh headers.
-namespace dealii::parallel
+namespace dealii
+{
+template <int dim, int spacedim> class Triangulation;
+namespace parallel
 {
 template <int dim, int spacedim> class DistributedTriangulationBase;
 }
+} // namespace dealii
 
 namespace ddfem::fem
 {
+/// Hexahedral mesh held whole by each rank: how meshes are made; coordinates in nm.
+using SerialTriangulation = dealii::Triangulation<3, 3>;
 /// Hexahedral mesh distributed over the ranks of its communicator; coordinates in nm.
 using Triangulation = dealii::parallel::DistributedTriangulationBase<3, 3>;
 
