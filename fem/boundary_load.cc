@@ -241,6 +241,10 @@ BoundaryLoad::FaceIntegral BoundaryLoad::integrate_face(const TractionField &fie
     }
   }
   FaceIntegral result;
+  if (sources.empty())
+  {
+    return result;
+  }
   descend(field, {face, {0., 0.}, {1., 1.}, {0, 0}, {}, 0., {}}, sources, result, work);
   return result;
 }
