@@ -2,6 +2,7 @@
 
 #include "coupling/convert.h"
 #include "coupling/dislocation_tractions.h"
+#include "coupling/face_displacements.h"
 #include "coupling/grain_geometry.h"
 #include "coupling/image_planes.h"
 #include "coupling/input_error.h"
@@ -189,6 +190,7 @@ void FiniteGrain::update_images(const LineSystem &lines)
   images = SurfaceImages(lines, planes_of_images, image_settings);
   const std::vector<Vec3> u = images.displacement(boundary_nodes());
   std::transform(u.begin(), u.end(), image_displacement.begin(), to_tensor);
+  project_where_held(ImageDisplacement(images, axis, face_resolution), image_displacement);
 }
 
 void FiniteGrain::describe_platen(const std::vector<PolyhedronShape::Facet> &facets)
@@ -196,6 +198,10 @@ void FiniteGrain::describe_platen(const std::vector<PolyhedronShape::Facet> &fac
   const unsigned degree = parameters.elasticity.degree;
   const fem::FaceSection section = fem::face_section(*mesh, platen_face, degree);
   platen_area = section.area;
+  const auto n_elements =
+      std::count_if(facets.begin(), facets.end(),
+                    [&](const PolyhedronShape::Facet &f) { return f.face_id == static_cast<int>(platen_face); });
+  face_resolution = 0.05 * std::sqrt(platen_area / static_cast<double>(n_elements));
   fixed_centre = to_vec3(fem::face_section(*mesh, fixed_face, degree).centre);
   double reach = 0;
   for (const auto &f : facets)
@@ -252,14 +258,34 @@ void FiniteGrain::add_swept(const SweptArea &area)
 {
   const auto &points = problem->boundary_points();
   const auto &triangles = area.triangles();
+  std::vector<dealii::Tensor<1, 3>> u(points.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     const Vec3 x = to_vec3(points[i]);
-    Vec3 u = Vec3::Zero();
+    Vec3 sum = Vec3::Zero();
     for (const SweptTriangle &t : triangles)
-      u += triangle_displacement(medium.nu, x, t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);
-    infinite_displacement[i] += to_tensor(u);
+      sum += triangle_displacement(medium.nu, x, t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);
+    u[i] = to_tensor(sum);
+  }
+  const double reach = 1e3 * grain_shape->diameter();
+  project_where_held(SweptDisplacement(triangles, medium.nu, axis, reach, face_resolution), u);
+  for (std::size_t i = 0; i < u.size(); ++i)
+    infinite_displacement[i] += u[i];
+}
+
+/// Replaces the prescribed components of @p u by the best approximation of the field on the held faces. Values at the nodes would
+/// miss what a line nearer than an element does between them, and with it the mean, which is what the platen force is made of.
+void FiniteGrain::project_where_held(const FaceDisplacement &field, std::vector<dealii::Tensor<1, 3>> &u) const
+{
+  const auto projected = problem->project_on_conditions(field);
+  for (std::size_t i = 0; i < u.size(); ++i)
+  {
+    const auto &ids = problem->boundary_ids()[i];
+    const bool on_platen = std::find(ids.begin(), ids.end(), platen_face) != ids.end();
+    for (unsigned c = 0; c < 3; ++c)
+      if (problem->prescribed_components()[i][c])
+        u[i][c] = (on_platen ? platen_sign : -platen_sign) * projected[i][c];
   }
 }
 

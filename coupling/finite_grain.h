@@ -1,6 +1,7 @@
 // The finite grain: superposition of the infinite-body field of the dislocations and the FEM correction.
 #pragma once
 
+#include "coupling/face_displacements.h"
 #include "coupling/parameters.h"
 #include "coupling/platen.h"
 #include "dd/forces/line_system.h"
@@ -66,7 +67,8 @@ public:
   /// Takes the state of the network as the one that prescribed displacements are counted from: relaxed
   /// with all surfaces traction-free, or grown from nothing in a perfect crystal.
   void set_reference(const Network &network, const LineSystem &lines);
-  /// Adds the displacement of the swept triangles to u~ at all boundary nodes.
+  /// Adds the displacement of the swept triangles to u~ at all boundary nodes; where it is prescribed, its best approximation on
+  /// the face.
   void add_swept(const SweptArea &area);
   const Platen &platen() const { return *platen_motion; }
   /// Solves for the correction with the platen at rest.
@@ -97,6 +99,7 @@ private:
   void relax(const LineSystem &lines);
   void set_unit_response();
   std::vector<dealii::Tensor<1, 3>> prescribed_at_rest() const;
+  void project_where_held(const FaceDisplacement &field, std::vector<dealii::Tensor<1, 3>> &u) const;
   double platen_load() const;
   void find_image_planes(const std::vector<PolyhedronShape::Facet> &facets);
   void update_images(const LineSystem &lines);
@@ -111,6 +114,8 @@ private:
   int axis = 2;             ///< loading axis
   double platen_sign = 1.0; ///< outward normal of the platen along the axis
   double gauge_length = 0, platen_area = 0, modulus = 0;
+  double face_resolution =
+      0; ///< of displacements on the held faces: a twentieth of the mean edge of their elements, nm
   std::unique_ptr<GrainShape> grain_shape;
   std::unique_ptr<Platen> platen_motion;
   Vec3 fixed_centre = Vec3::Zero();

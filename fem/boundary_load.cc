@@ -241,6 +241,10 @@ BoundaryLoad::FaceIntegral BoundaryLoad::integrate_face(const TractionField &fie
     }
   }
   FaceIntegral result;
+  if (sources.empty())
+  {
+    return result;
+  }
   descend(field, {face, {0., 0.}, {1., 1.}, {0, 0}, {}, 0., {}}, sources, result, work);
   return result;
 }
@@ -313,6 +317,24 @@ void BoundaryLoad::reduce(TractionSummary &summary) const
   summary.n_points = counts[0];
   summary.n_evaluations = counts[1];
   summary.n_unresolved = counts[2];
+}
+
+std::vector<double> BoundaryLoad::mass(unsigned face) const
+{
+  const std::size_t n = nodes_of_face[face].size();
+  std::vector<double> matrix(n * n, 0.);
+  std::vector<Sample> samples;
+  const unsigned n_points = 2 * grid.degree + 1; // exact on flat faces
+  append_points({face, {0., 0.}, {1., 1.}, {0, 0}, {}, 0., {}}, {n_points, n_points}, samples);
+  for (const Sample &s : samples)
+  {
+    const double area = s.area.norm();
+    for (std::size_t k = 0; k < n * n; ++k)
+    {
+      matrix[k] += s.values[k / n] * s.values[k % n] * area;
+    }
+  }
+  return matrix;
 }
 
 void BoundaryLoad::add_uniform(dealii::types::boundary_id boundary, const dealii::Tensor<1, 3> &traction,

@@ -34,6 +34,11 @@ public:
   /// load += int N . traction dS over the faces with the given id. Collective.
   void add_uniform(dealii::types::boundary_id boundary, const dealii::Tensor<1, 3> &traction, NodalVector &load) const;
 
+  /// Local nodes of a face of the grid, as face_nodes() orders them.
+  const std::vector<unsigned> &nodes(unsigned face) const { return nodes_of_face[face]; }
+  /// Products of a face's shape functions, int N_a N_b dS, row by row (nm^2).
+  std::vector<double> mass(unsigned face) const;
+
 private:
   /// A piece is halved when it would need more Gauss points than this in a direction. Fewer points on smaller pieces
   /// cost more near a line, more points on larger ones cost more where only a corner of the piece is near it.

@@ -9,10 +9,12 @@
 #include "fem/start_vectors.h"
 #include "fem/stress_recovery.h"
 #include "fem/surface_output.h"
+#include "fem/trace_projection.h"
 
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 namespace ddfem::fem
@@ -24,6 +26,16 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start)
 {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::set<dealii::types::boundary_id> boundaries_of(const std::vector<DisplacementCondition> &conditions)
+{
+  std::set<dealii::types::boundary_id> boundaries;
+  for (const DisplacementCondition &condition : conditions)
+  {
+    boundaries.insert(condition.boundary);
+  }
+  return boundaries;
 }
 } // namespace
 
@@ -38,6 +50,7 @@ public:
         system(grid, flags_of(condition_of), lame_lambda(moduli), moduli.mu, volume_centre.second,
                std::cbrt(volume_centre.first)),
         boundary_load(grid, volume_centre.second, given.traction_tolerance),
+        projection(grid, boundaries_of(conditions), projection_tolerance),
         recovery(grid, lame_lambda(moduli), moduli.mu, given.recovery == Recovery::patches),
         locator(grid, given.outside_tolerance), field_load(system.make_vector()), uniform_load(system.make_vector()),
         displacement(system.make_vector()), starts(system, given.n_start_vectors)
@@ -78,6 +91,7 @@ public:
   const std::vector<std::array<int, 3>> condition_of;
   const ElasticSystem system;
   const BoundaryLoad boundary_load;
+  const TraceProjection projection;
   const StressRecovery recovery;
   mutable PointLocator locator;
   NodalVector field_load, uniform_load;
@@ -268,6 +282,11 @@ void ElasticProblem::clear_tractions()
 {
   implementation->field_load = 0.;
   implementation->uniform_load = 0.;
+}
+
+std::vector<dealii::Tensor<1, 3>> ElasticProblem::project_on_conditions(const TractionField &field) const
+{
+  return implementation->at_boundary(implementation->projection.project(field));
 }
 
 SolveInfo ElasticProblem::solve(const std::vector<dealii::Tensor<1, 3>> &prescribed)

@@ -107,6 +107,12 @@ public:
   /// Removes all loads.
   void clear_tractions();
 
+  /// Best approximation of the tractions sigma~ n (n outward) of a field on the boundaries that have a condition, at
+  /// boundary_points(); zero elsewhere. See TraceProjection; its integrals aim at the relative error projection_tolerance. For
+  /// displacements that are to be prescribed, which the caller presents as tractions.
+  std::vector<dealii::Tensor<1, 3>> project_on_conditions(const TractionField &field) const;
+  static constexpr double projection_tolerance = 1e-4;
+
   /// Solves for the correction. `prescribed`: displacement (nm) for each of boundary_points(), of which only the
   /// prescribed components are read. Starts from the previous solution. A load without any force gives exactly zero at
   /// once. Throws std::invalid_argument for a wrong size, std::runtime_error without convergence or with a load that is

@@ -190,18 +190,29 @@ std::vector<SymTensor> SurfaceImages::stress(const std::span<const Vec3> points)
   return values;
 }
 
+Vec3 SurfaceImages::displacement_of(const Piece &piece, const Vec3 &x) const
+{
+  const Frame &frame = planes[piece.plane];
+  const Vec3 local = frame.local(x);
+  return frame.to_local.transpose() *
+         std::visit([&](const auto &field) { return field.displacement(local); }, piece.field);
+}
+
+Vec3 SurfaceImages::displacement(const std::span<const unsigned> images, const Vec3 &x) const
+{
+  Vec3 u = Vec3::Zero();
+  for (const unsigned i : images)
+    u += displacement_of(pieces[i], x);
+  return u;
+}
+
 std::vector<Vec3> SurfaceImages::displacement(const std::span<const Vec3> points) const
 {
   std::vector<Vec3> values(points.size(), Vec3::Zero());
 #pragma omp parallel for schedule(dynamic, 16)
   for (std::size_t k = 0; k < points.size(); ++k)
     for (const Piece &piece : pieces)
-    {
-      const Frame &frame = planes[piece.plane];
-      const Vec3 x = frame.local(points[k]);
-      values[k] += frame.to_local.transpose() *
-                   std::visit([&](const auto &field) { return field.displacement(x); }, piece.field);
-    }
+      values[k] += displacement_of(piece, points[k]);
   return values;
 }
 

@@ -60,6 +60,8 @@ public:
   int face_of_image(std::size_t image) const { return planes[pieces[image].plane].face_id; }
   /// Stress of some of the images, in ascending order, MPa.
   SymTensor stress(std::span<const std::size_t> images, const Vec3 &x) const;
+  /// Displacement of some of the images, nm.
+  Vec3 displacement(std::span<const unsigned> images, const Vec3 &x) const;
   /// Lower bound of the distance of a point of the grain from the singularities of one image, nm.
   double image_distance(std::size_t image, const Vec3 &x) const;
 
@@ -109,6 +111,7 @@ private:
   using PlaneSet = std::uint64_t; // one bit for each plane
 
   class NodeFluxes;
+  Vec3 displacement_of(const Piece &piece, const Vec3 &x) const;
   template <typename PieceNumber> SymTensor sum_of_pieces(std::size_t n, PieceNumber &&number, const Vec3 &x) const;
   void add_plane(const LineSystem &lines, std::size_t plane, const ImageSettings &settings);
   void add_lines(const LineSystem &lines, std::size_t plane, const ImageSettings &settings, NodeFluxes &fluxes);

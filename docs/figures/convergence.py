@@ -12,11 +12,14 @@ import matplotlib.pyplot as plt
 
 # What is drawn: title, abscissa, expected order for degree 1 and 2.
 CASES = {
+    'screw_under_surface': ('V7: force on a screw under a surface', 'element size / depth', (2, 4)),
+    'edge_under_surface': ('V7: force on an edge under a surface', 'element size / depth', (2, 4)),
     'screw_in_plate': ('V8: force on a screw in a plate', 'element size / plate thickness', (2, 4)),
     'edge_in_plate': ('V9: bend of a plate by an edge', 'element size / plate thickness', (2, None)),
     'screw_in_rod': ('V10: force on a screw in a free rod', 'element size / rod radius', (2, 4)),
     'screw_through_surface': ('V11: screw through a free surface, inside', 'element size / distance from the line', (2, 4)),
     'screw_through_surface_at_surface': ('V11: the same, on the surface', 'element size / distance from the line', (1, 2)),
+    'loops_under_surface': ('V14: stress of triangular loops', 'element size / smallest depth', (2, 4)),
     'prismatic_loop_under_surface': ('V13: force on a prismatic loop', 'element size / depth', (2, 4)),
 }
 

@@ -8,11 +8,11 @@
 
 namespace ddfem::test
 {
-/// Area swept by a loop of Burgers vector @p b in the middle of @p shape that grows from nothing on the plane of normal @p n, right-
-/// handed about it, until it has left. @p network (empty) holds the loop meanwhile.
-inline SweptArea loop_that_has_left(Network &network, const GrainShape &shape, const Vec3 &n, const Vec3 &b)
+/// Area swept by a loop of Burgers vector @p b that grows from nothing at @p centre on the plane of normal @p n, right-handed about
+/// it, until it has left. @p network (empty) holds the loop meanwhile.
+inline SweptArea loop_that_has_left(Network &network, const GrainShape &shape, const Vec3 &n, const Vec3 &b,
+                                    const Vec3 &centre)
 {
-  const Vec3 centre = 0.5 * (shape.lower_corner() + shape.upper_corner());
   const PlaneIndex plane = network.planes().find_or_insert({0, 0, 0}, n, centre);
   const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
   std::vector<Vec3> points;
@@ -39,5 +39,11 @@ inline SweptArea loop_that_has_left(Network &network, const GrainShape &shape, c
     remesh(c);
   }
   return swept;
+}
+
+/// The same in the middle of the grain.
+inline SweptArea loop_that_has_left(Network &network, const GrainShape &shape, const Vec3 &n, const Vec3 &b)
+{
+  return loop_that_has_left(network, shape, n, b, 0.5 * (shape.lower_corner() + shape.upper_corner()));
 }
 } // namespace ddfem::test

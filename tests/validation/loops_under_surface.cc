@@ -9,11 +9,11 @@ using namespace ddfem::validation;
 namespace
 {
 /// Largest error of a component over the points deeper than @p depth, relative to the largest image component there.
-double case_error(const ReferenceLoop &loop, const Mesh &mesh, const double depth)
+double case_error(const ReferenceLoop &loop, const Mesh &mesh, const double depth, const unsigned degree = 2)
 {
   const IsotropicMedium m{loop.mu, loop.nu, 0.01};
   const LineSystem lines(m, loop.network, nullptr, RayDirection::normal, nullptr, nullptr);
-  ImageField image(mesh, 2, {}, m);
+  ImageField image(mesh, degree, {}, m);
   image.solve(lines);
   std::vector<Vec3> points;
   std::vector<std::array<double, 6>> expected;
@@ -25,17 +25,39 @@ double case_error(const ReferenceLoop &loop, const Mesh &mesh, const double dept
     }
   return largest_error(image.stress(points), expected);
 }
+
+/// Error of all loops against element size, for both degrees.
+void print_study(const Report &report)
+{
+  const ConvergenceStudy study(report, "loops_under_surface");
+  const auto reference = reference_loops();
+  constexpr double shallowest = 2;
+  for (const unsigned degree : {1U, 2U})
+    for (const double h : {2.0, 1.5, 1.0, 0.75, 0.5})
+    {
+      if (degree == 2 && h < 0.75)
+        continue;
+      const auto mesh = half_space_mesh(h, 3);
+      double worst = 0;
+      for (const ReferenceLoop &loop : reference)
+        worst = std::max(worst, case_error(loop, *mesh, shallowest, degree));
+      study.add(degree, h / shallowest, worst);
+    }
+}
 } // namespace
 
 int main(int argc, char **argv)
 {
   std::vector<double> sizes;
-  for (int k = 1; k < argc; ++k)
+  const bool studies = study_requested(argc, argv);
+  for (int k = 1; k < argc && !studies; ++k)
     sizes.push_back(std::atof(argv[k])); // element sizes of a convergence study
   return run(
       argc, argv,
       [&](Report &report)
       {
+        if (studies)
+          return print_study(report);
         const auto reference = reference_loops();
         const auto study = [&](const double h, const double depth, const std::vector<std::size_t> &cases)
         {

@@ -5,6 +5,8 @@
 #include "image_field.h"
 #include "reference_loops.h"
 
+#include <chrono>
+
 using namespace ddfem;
 using namespace ddfem::validation;
 
@@ -12,10 +14,22 @@ namespace
 {
 const std::vector<ImagePlane> top{{4, Vec3::Zero(), -Vec3::UnitZ()}};
 
-/// Relative error of the force on a line along y at depth @p d, element size 1. A line that goes on as it is beyond y- and y+ sees
-/// plane strain if these are held along y, antiplane shear if they are held across it.
-double force_error(const Mesh &mesh, const unsigned degree, const double d, const bool screw, const double image_depth)
+/// What the force on a line costs and how good it is.
+struct Measured
 {
+  double error;          ///< relative
+  double setup, seconds; ///< wall time: mesh, matrix and preconditioner; images, tractions, solve and stress
+  std::uint64_t n_unknowns;
+};
+
+/// Relative error of the force on a line along y at depth @p d. A line that goes on as it is beyond y- and y+ sees plane strain if
+/// these are held along y, antiplane shear if they are held across it.
+Measured measure_force(const std::vector<std::vector<double>> &sizes, const unsigned degree, const double d,
+                       const bool screw, const double image_depth)
+{
+  using Clock = std::chrono::steady_clock;
+  const auto seconds = [](const Clock::time_point from, const Clock::time_point to)
+  { return std::chrono::duration<double>(to - from).count(); };
   const IsotropicMedium m{50e3, 0.3, 0.01};
   const double b = 0.25, half = 4000;
   Network network;
@@ -23,23 +37,26 @@ double force_error(const Mesh &mesh, const unsigned degree, const double d, cons
   add_line(network, {Vec3(0, -half, d), Vec3(0, half, d)}, burgers, {}, false, NodeConstraint::pinned);
   const LineSystem lines(m, network, nullptr, RayDirection::normal, nullptr, nullptr);
   const std::array<bool, 3> held{screw, !screw, screw};
-  ImageField image(mesh, degree, {{2, held}, {3, held}}, m);
+  const double width = std::accumulate(sizes[0].begin(), sizes[0].end(), 0.0),
+               length = std::accumulate(sizes[1].begin(), sizes[1].end(), 0.0);
+  const auto start = Clock::now();
+  const auto mesh = box_mesh(sizes, Vec3(-width / 2, -length / 2, 0));
+  ImageField image(*mesh, degree, {{2, held}, {3, held}}, m);
+  const auto ready = Clock::now();
   image.solve(lines, {}, top, image_depth);
   const Vec3 force = image.force_per_length(Vec3(0, 0, d), Vec3::UnitY(), burgers);
   const double exact = -m.mu * b * b / (4 * M_PI * d) / (screw ? 1 : 1 - m.nu); // towards the surface
-  return force[2] / exact - 1;
+  return {force[2] / exact - 1, seconds(start, ready), seconds(ready, Clock::now()), image.elastic_problem().n_dofs()};
 }
 
 void straight_lines(Report &report, const double image_depth, const unsigned degree, const bool print_only)
 {
-  const auto half = graded(1, 4, 300), depth = graded(1, 12, 1000);
-  const double width = std::accumulate(half.begin(), half.end(), 0.0);
-  const auto mesh = box_mesh({mirrored(half), {4}, depth}, Vec3(-width, -2, 0));
+  const std::vector<std::vector<double>> sizes{mirrored(graded(1, 4, 300)), {4}, graded(1, 12, 1000)};
   for (const bool screw : {true, false})
     for (const double d : print_only ? std::vector<double>{10.0, 7.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.5, 0.2}
                                      : std::vector<double>{10.0, 4.0, 1.0, 0.2})
     {
-      const double error = force_error(*mesh, degree, d, screw, image_depth);
+      const double error = measure_force(sizes, degree, d, screw, image_depth).error;
       char row[120];
       std::snprintf(row, sizeof row, "%s at depth %4.1f h, degree %u, images within %3.1f h: error of its image force",
                     screw ? "screw" : "edge ", d, degree, image_depth);
@@ -51,6 +68,68 @@ void straight_lines(Report &report, const double image_depth, const unsigned deg
       }
       else
         report.below(row, error, 0.02);
+    }
+}
+
+/// Error of the elements alone against their size, for a line at the depth 1: elements of one size to six depths to the sides and below.
+void print_convergence(const Report &report)
+{
+  for (const bool screw : {true, false})
+  {
+    const ConvergenceStudy study(report, screw ? "screw_under_surface" : "edge_under_surface");
+    for (const unsigned degree : {1U, 2U})
+      for (const double parts : {2.0, 3.0, 4.0, 6.0, 8.0})
+      {
+        const double h = 1 / parts;
+        const std::vector<std::vector<double>> sizes{mirrored(graded(h, 6, 400)), {1}, graded(h, 6, 800)};
+        study.add(degree, h, measure_force(sizes, degree, 1, screw, 0).error);
+      }
+  }
+}
+
+/// Element sizes from a line outwards: @p finest up to twice its depth, then twice as wide each up to 1, which is kept up to
+/// @p coarse, then growing by 2 up to @p end.
+std::vector<double> refined(const double finest, const double depth, const double coarse, const double end)
+{
+  std::vector<double> sizes;
+  double x = 0, size = finest;
+  while (x < end)
+  {
+    sizes.push_back(size);
+    x += size;
+    if (x >= 2 * depth - 1e-9 && size < 1)
+      size = std::min(1.0, 2 * size);
+    else if (x >= coarse - 1e-9 && size >= 1)
+      size *= 2;
+  }
+  return sizes;
+}
+
+/// The other way to resolve a line near the surface: quadratic elements refined towards it, without images, against images on the mesh
+/// of element size 1. The mesh is graded and has one cell along the line: the least that refinement can cost.
+void compare_with_refinement(Report &report)
+{
+  report.note("depth/h  line   mesh at the line   unknowns   error of force   set-up (s)   correction (s)");
+  const auto print = [&](const double d, const bool screw, const std::string &mesh, const Measured &m)
+  {
+    char row[160];
+    std::snprintf(row, sizeof row, "%6.1f   %s  %-17s %9lu  %12.4f %%   %9.3f   %9.3f", d, screw ? "screw" : "edge ",
+                  mesh.c_str(), static_cast<unsigned long>(m.n_unknowns), 100 * m.error, m.setup, m.seconds);
+    report.note(row);
+  };
+  const std::vector<std::vector<double>> plain{mirrored(graded(1, 4, 300)), {4}, graded(1, 12, 1000)};
+  for (const bool screw : {false, true})
+    for (const double d : {4.0, 2.0, 1.0, 0.5, 0.2})
+    {
+      print(d, screw, "h, no images", measure_force(plain, 2, d, screw, 0));
+      print(d, screw, "h, images", measure_force(plain, 2, d, screw, coupling::GrainParameters{}.image_depth));
+      for (const int parts : {2, 4})
+        if (const double finest = d / parts; finest < 1)
+        {
+          const std::vector<std::vector<double>> sizes{
+              mirrored(refined(finest, d, 4, 300)), {4}, refined(finest, d, 12, 1000)};
+          print(d, screw, "depth/" + std::to_string(parts) + ", no images", measure_force(sizes, 2, d, screw, 0));
+        }
     }
 }
 
@@ -83,14 +162,20 @@ void loops(Report &report, const double image_depth)
 int main(int argc, char **argv)
 {
   const bool study = study_requested(argc, argv); // with and without images
+  const bool refine = argc > 1 && std::string_view(argv[1]) == "--refine";
   return run(argc, argv,
              [&](Report &report)
              {
+               if (refine)
+                 return compare_with_refinement(report);
                const double depth = coupling::GrainParameters{}.image_depth;
                if (study)
+               {
+                 print_convergence(report);
                  for (const unsigned degree : {1U, 2U})
                    for (const double within : {0.0, depth})
                      straight_lines(report, within, degree, true);
+               }
                else
                  straight_lines(report, depth, 2, false);
                loops(report, depth);

@@ -135,6 +135,17 @@ Cases all_cases()
     cases["corner loop"].push_back(corner_loop(at, oblique, 60, glide));
     cases["corner loop"].push_back(corner_loop(at, x, 60, prismatic));
   }
+  // Nearer to a platen than an element of 50, down to a tenth of it: the distance of the nearest point of the loop.
+  for (const double near : {5.0, 12.5, 25.0, 50.0})
+    for (const bool far_end : {false, true})
+    {
+      const auto place = [&](const double extent)
+      { return Vec3(far_end ? length - near - extent : near + extent, 110, 100); };
+      cases["loop 0.1 to 1 element from a platen"].push_back(loop(place(40 * std::sqrt(0.5)), oblique, 40, glide));
+      cases["loop 0.1 to 1 element from a platen"].push_back(loop(place(0), x, 40, prismatic));
+      // In the corner between a platen and a side, where its image has to be right as well.
+      cases["loop close to a platen and a side"].push_back(loop(Vec3(place(0)[0], 45, 100), x, 40, prismatic));
+    }
   return cases;
 }
 
@@ -157,18 +168,18 @@ Errors largest_errors(Bar &bar, const std::vector<Case> &cases)
   return worst;
 }
 
-/// Every kind of network in every place on the production mesh, and the order of linear elements.
+/// Every kind of network in every place, on the production mesh and on a coarse one of linear elements. The uniform stress is among
+/// the fields of the elements, and the mean of the displacement on the platens is that of the projection: nothing is left but the
+/// error of the integrals, whose tolerance is 1e-4.
 void check_cases(Report &report)
 {
-  Bar production(10, 2), coarse(5, 1), fine(10, 1);
+  Bar production(10, 2), coarse(5, 1);
   for (const auto &[name, cases] : all_cases())
   {
     const Errors errors = largest_errors(production, cases);
-    report.below(name + ", 10 quadratic elements along the bar: error", errors.force, 1e-3);
+    report.below(name + ", 10 quadratic elements along the bar: error", errors.force, 1e-4);
     report.below(name + ": difference of the platens", errors.mismatch, 1e-5);
-    const std::vector<Case> first(cases.begin(), cases.begin() + 1);
-    report.below(name + ", linear elements: error at 10 over error at 5 (second order: 0.25)",
-                 largest_errors(fine, first).force / largest_errors(coarse, first).force, 0.35);
+    report.below(name + ", 5 linear elements: error", largest_errors(coarse, cases).force, 1e-4);
   }
 }
 
@@ -237,19 +248,17 @@ void check_closures(Report &report)
   compare("10 degrees above the surface", normal, closed_along(c, Vec3(0, std::cos(M_PI / 18), std::sin(M_PI / 18))));
 }
 
-/// Errors against the number of elements, degree by degree; besides, of a loop that is 25 from a platen.
+/// Errors against the number of elements, degree by degree.
 void print_table(const Report &report)
 {
   for (const unsigned degree : {1U, 2U})
     for (const unsigned elements : {5U, 10U, 20U})
     {
       Bar bar(elements, degree);
-      Cases rows = all_cases();
-      rows["shear loop 25 from a platen"].push_back(loop(Vec3(60, 110, 100), oblique, 50, slip * along));
-      for (const auto &[name, cases] : rows)
+      for (const auto &[name, cases] : all_cases())
       {
         char row[120];
-        std::snprintf(row, sizeof row, "degree %u, %2u elements along the bar, %-28s largest error %9.5f %%", degree,
+        std::snprintf(row, sizeof row, "degree %u, %2u elements along the bar, %-37s largest error %9.5f %%", degree,
                       elements, (name + ":").c_str(), 100 * largest_errors(bar, cases).force);
         report.note(row);
       }
