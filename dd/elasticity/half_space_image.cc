@@ -35,9 +35,9 @@ struct Radii
   double psi_q, psi_r; ///< of psi; psi_,i = -X_i s
   double lambda_p, lambda_q, lambda_r;
 
-  Radii(const Vec3 &x, const double a2)
+  explicit Radii(const Vec3 &x)
   {
-    const double radius = std::sqrt(x.squaredNorm() + a2);
+    const double radius = x.norm();
     v = 1.0 / radius;
     s = 1.0 / (radius + x[2]);
     v2 = v * v;
@@ -105,7 +105,7 @@ struct DisplacementSums
 /// (c . grad) psi + (along . grad) Lambda at x relative to the mirrored source point.
 void add_element(StressSums &sums, const Vec3 &x, const Vec3 &c, const Vec3 &along)
 {
-  const Radii k(x, 0.0);
+  const Radii k(x);
   const double v7 = k.v5 * k.v2;
   sums.add_tangential(x, c, k.psi_q, k.psi_r, k.lambda_q, k.lambda_r);
   sums.add_normal(x, c, -k.v3, 3 * k.v5);
@@ -127,7 +127,7 @@ void add_element(StressSums &sums, const Vec3 &x, const Vec3 &c, const Vec3 &alo
 /// The same for the displacement, times @p weight.
 void add_element(DisplacementSums &sums, const Vec3 &x, const Vec3 &c, const Vec3 &along, const double weight)
 {
-  const Radii k(x, 0.0);
+  const Radii k(x);
   const double cx = c[0] * x[0] + c[1] * x[1], ex = along[0] * x[0] + along[1] * x[1], ez = along[2], z = x[2];
   const auto tangential = [&](const int i)
   { return -c[i] * k.s + cx * x[i] * k.psi_q + along[i] * k.lambda_p + ex * x[i] * k.lambda_q - ez * x[i] * k.v3; };
@@ -211,18 +211,15 @@ double SegmentImage::distance(const Vec3 &x) const
 
 LegImage::LegImage(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &b)
     : origin(mirrored(x)), mirror(medium, origin, outward, mirror_burgers(b)), c(leg_direction(b)),
-      of_chi(2 * medium.nu / (1 - medium.nu)), of_psi(-x[2] / (1 - medium.nu)), mu(medium.mu), nu(medium.nu)
+      of_chi(2 * medium.nu / (1 - medium.nu)), of_psi(-x[2] / (1 - medium.nu)),
+      of_lambda(-0.5 * medium.a * medium.a / (1 - medium.nu)), mu(medium.mu), nu(medium.nu)
 {
-  constexpr double many_core_radii = 10;
-  const bool deep = x[2] > many_core_radii * medium.a;
-  a2 = deep ? 0.0 : medium.a * medium.a;
-  of_lambda = deep ? -0.5 * medium.a * medium.a / (1 - nu) : 0.0;
 }
 
 SymTensor LegImage::stress(const Vec3 &x) const
 {
   const Vec3 r = x - origin;
-  const Radii k(r, a2);
+  const Radii k(r);
   StressSums sums;
   // chi_,ijk has q = -s^2/2, r = s^3/Rb.
   sums.add_tangential(r, of_chi * c, -0.5 * k.s * k.s, k.v * k.s * k.s * k.s, k.psi_q, k.psi_r);
@@ -238,7 +235,7 @@ SymTensor LegImage::stress(const Vec3 &x) const
 Vec3 LegImage::displacement(const Vec3 &x) const
 {
   const Vec3 r = x - origin;
-  const Radii k(r, a2);
+  const Radii k(r);
   const double cx = c[0] * r[0] + c[1] * r[1];
   // The unit of length in the logarithm is a rigid translation.
   const double chi_p = -0.5 * (r[2] * k.s - std::log(k.s));
@@ -258,17 +255,40 @@ Vec3 LegImage::displacement(const Vec3 &x) const
   return sums.displacement(mu / (2 * std::numbers::pi), mu, nu, x[2]);
 }
 
-PiercingImage::PiercingImage(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &b)
-    : origin(x), mirror(medium, x, outward, mirror_burgers(b)), screw(-b[2]), a2(medium.a * medium.a), mu(medium.mu)
+PiercingImage::PiercingImage(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &b, const double tolerance)
+    : origin(x), mirror(medium, x, outward, mirror_burgers(b)), screw(-b[2]), a(medium.a), mu(medium.mu),
+      quadrature_tolerance(tolerance)
 {
+}
+
+PiercingImage::Torsion PiercingImage::torsion(const Vec3 &r) const
+{
+  const double a2 = a * a, core_depth = 30 * a;
+  const bool near = r.squaredNorm() < core_depth * core_depth;
+  const Radii k(near ? Vec3(r[0], r[1], r[2] + core_depth) : r);
+  Torsion sum{-k.s, k.psi_q, k.lambda_p};
+  if (!near)
+    return {sum.first + 0.25 * a2 * k.v3, sum.second - 0.75 * a2 * k.v5, sum.shear - 0.75 * a2 * r[2] * k.v5};
+  auto singularities = internal::LineSingularities::of_point(r, a, Vec3::Zero(), outward);
+  singularities.add(0, a); // branch point of D
+  internal::integrate_on_panels(singularities, core_depth, quadrature_tolerance,
+                                [&](const double s, const double weight)
+                                {
+                                  const double depth = std::hypot(s, a), core = 0.5 * a2 / depth;
+                                  const Radii e(Vec3(r[0], r[1], r[2] + depth));
+                                  sum.first -= weight * (e.lambda_p + core * e.v3);
+                                  sum.second -= weight * (e.lambda_q - 3 * core * e.v5);
+                                  sum.shear += weight * (e.v3 + 3 * core * (r[2] + depth) * e.v5);
+                                });
+  return sum;
 }
 
 SymTensor PiercingImage::stress(const Vec3 &x) const
 {
   const Vec3 r = x - origin;
-  const Radii k(r, a2);
+  const Torsion t = torsion(r);
   const double factor = mu * screw / (2 * std::numbers::pi);
-  const double shear = factor * k.v * k.s, plane = shear * k.s;
+  const double shear = factor * t.shear, plane = factor * t.second;
   SymTensor sigma;
   sigma << 2 * plane * r[0] * r[1], -2 * plane * r[0] * r[1], 0, -plane * (r[0] * r[0] - r[1] * r[1]), shear * r[1],
       -shear * r[0];
@@ -278,8 +298,7 @@ SymTensor PiercingImage::stress(const Vec3 &x) const
 Vec3 PiercingImage::displacement(const Vec3 &x) const
 {
   const Vec3 r = x - origin;
-  const Radii k(r, a2);
-  const double factor = screw / (2 * std::numbers::pi) * k.s;
-  return {-factor * r[1], factor * r[0], 0.0};
+  const double factor = screw / (2 * std::numbers::pi) * torsion(r).first;
+  return {factor * r[1], -factor * r[0], 0.0};
 }
 } // namespace ddfem

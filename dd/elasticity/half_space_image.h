@@ -62,12 +62,15 @@ private:
 
 /// Image field of the half-line from @p x (z >= 0) to z = infinity, line sense away from @p x: a leg of the ends of a
 /// line. Needed where the flux of the Burgers vector of imaged segments ends. With the core radius a the integral over the
-/// leg adds -a^2/(2(1-nu)) Lambda to what is derived in phi, up to (a/z)^4; less than ten core radii deep the core radius only
-/// keeps the image finite.
+/// leg adds -a^2/(2(1-nu)) Lambda to what is derived in phi, up to (a/z)^4: a leg that begins above shortest_depth() is to be
+/// continued down to it by a SegmentImage.
 class LegImage
 {
 public:
   LegImage(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &b);
+
+  /// Depth (nm) from which on the relative error, (a/z)^4, is about 1e-6.
+  static double shortest_depth(const IsotropicMedium &medium) { return 30 * medium.a; }
 
   SymTensor stress(const Vec3 &x) const;
   /// Displacement of the part that is not the mirror image, nm; the mirror image of the leg belongs to the segments'
@@ -82,16 +85,23 @@ private:
   RayStressField mirror;
   Vec3 c;
   double of_chi, of_psi, of_lambda; // coefficients in phi: 1, nm, nm^2
-  double a2, mu, nu;
+  double mu, nu;
 };
 
 /// Image field of the whole line that pierces the surface at @p x (z = 0) along its normal, less the parts that
-/// belong to the image of its leg: what remains is the torsion of the screw part (Eshelby & Stroh, Phil. Mag. 42 (1951)
-/// 1401). @p b: Burgers vector for the line sense that leaves the body.
+/// belong to the image of its leg: what remains is the torsion of the screw part. For a = 0 it is that of Eshelby & Stroh (Phil.
+/// Mag. 42 (1951) 1401), u = (b/2 pi) (d_y psi, -d_x psi, 0), which leaves free the surface with the shear tractions
+/// mu b/(2 pi) 1/r of the singular line. With the core radius these are mu b/(2 pi) d_r g, g = (1 - a/2 d_a) ln(sqrt(r^2 + a^2)), and
+///
+///   d_z psi = (1 - a/2 d_a) [ -int_0^infinity ds/sqrt(r^2 + (z+D)^2) ] = g on z = 0,   D = sqrt(s^2 + a^2).
+///
+/// The integrand in psi is -Lambda + a^2/(2D)/Rb with Z = z + D. From s = 30 a on it is that of a = 0 up to (a/s)^4; farther than 30 a from the
+/// point the whole is psi - a^2/4 /|x| up to (a/|x|)^4.
+/// @p b: Burgers vector for the line sense that leaves the body.
 class PiercingImage
 {
 public:
-  PiercingImage(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &b);
+  PiercingImage(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &b, double tolerance);
 
   /// The mirror image of the leg included, so that the stress of a line that ends here is that of its segments' images
   /// plus this.
@@ -102,8 +112,16 @@ public:
   double distance(const Vec3 &x) const { return (x - origin).norm(); }
 
 private:
+  /// psi_,i = first X_i, psi_,xy = second X Y, psi_,iz = shear X_i.
+  struct Torsion
+  {
+    double first, second, shear;
+  };
+  Torsion torsion(const Vec3 &r) const;
+
   Vec3 origin;
   RayStressField mirror;
-  double screw, a2, mu; // screw: b_z of the line with sense +z, nm
+  double screw, a, mu; // screw: b_z of the line with sense +z, nm
+  double quadrature_tolerance;
 };
 } // namespace ddfem

@@ -89,8 +89,8 @@ void SurfaceImages::add_plane(const LineSystem &lines, const std::size_t plane, 
 {
   NodeFluxes fluxes;
   add_lines(lines, plane, settings, fluxes);
-  add_rays(lines, plane, fluxes);
-  add_legs(lines, plane, fluxes);
+  add_rays(lines, plane, settings, fluxes);
+  add_legs(lines, plane, settings, fluxes);
 }
 
 void SurfaceImages::add_lines(const LineSystem &lines, const std::size_t plane, const ImageSettings &settings,
@@ -112,7 +112,8 @@ void SurfaceImages::add_lines(const LineSystem &lines, const std::size_t plane, 
   }
 }
 
-void SurfaceImages::add_rays(const LineSystem &lines, const std::size_t plane, NodeFluxes &fluxes)
+void SurfaceImages::add_rays(const LineSystem &lines, const std::size_t plane, const ImageSettings &settings,
+                             NodeFluxes &fluxes)
 {
   const Frame &frame = planes[plane];
   for (std::size_t i = 0; i < lines.rays().size(); ++i)
@@ -123,21 +124,29 @@ void SurfaceImages::add_rays(const LineSystem &lines, const std::size_t plane, N
       continue;
     planes_of_ray[i] |= PlaneSet{1} << plane;
     const Vec3 foot(origin[0], origin[1], 0);
-    pieces.push_back({plane, PiercingImage(lines.medium(), foot, burgers)});
+    pieces.push_back({plane, PiercingImage(lines.medium(), foot, burgers, settings.tolerance)});
     if (ray.direction.dot(frame.outward) < 1 - 1e-12)
       pieces.push_back({plane, RayTurn{lines.medium(), foot, frame.to_local * ray.direction, burgers}});
     fluxes.add(ray.origin, -ray.burgers);
   }
 }
 
-void SurfaceImages::add_legs(const LineSystem &lines, const std::size_t plane, const NodeFluxes &fluxes)
+void SurfaceImages::add_legs(const LineSystem &lines, const std::size_t plane, const ImageSettings &settings,
+                             const NodeFluxes &fluxes)
 {
   const Frame &frame = planes[plane];
   fluxes.for_each_open_end(
       [&](const NodeFluxes::Flux &flux)
       {
-        const Vec3 x = frame.local(flux.position);
-        pieces.push_back({plane, LegImage(lines.medium(), x, frame.to_local * flux.burgers)});
+        Vec3 x = frame.local(flux.position);
+        const Vec3 burgers = frame.to_local * flux.burgers;
+        if (const double deep = LegImage::shortest_depth(lines.medium()); x[2] < deep)
+        {
+          const Vec3 below(x[0], x[1], deep);
+          pieces.push_back({plane, SegmentImage(lines.medium(), x, below, burgers, settings.tolerance)});
+          x = below;
+        }
+        pieces.push_back({plane, LegImage(lines.medium(), x, burgers)});
         legs.push_back({{flux.position, -frame.outward, -flux.burgers}, frame.face_id});
       });
 }

@@ -115,8 +115,8 @@ private:
   template <typename PieceNumber> SymTensor sum_of_pieces(std::size_t n, PieceNumber &&number, const Vec3 &x) const;
   void add_plane(const LineSystem &lines, std::size_t plane, const ImageSettings &settings);
   void add_lines(const LineSystem &lines, std::size_t plane, const ImageSettings &settings, NodeFluxes &fluxes);
-  void add_rays(const LineSystem &lines, std::size_t plane, NodeFluxes &fluxes);
-  void add_legs(const LineSystem &lines, std::size_t plane, const NodeFluxes &fluxes);
+  void add_rays(const LineSystem &lines, std::size_t plane, const ImageSettings &settings, NodeFluxes &fluxes);
+  void add_legs(const LineSystem &lines, std::size_t plane, const ImageSettings &settings, const NodeFluxes &fluxes);
   bool is_freed(const std::vector<PlaneSet> &sets, std::size_t i, int face_id) const;
 
   std::vector<Frame> planes;

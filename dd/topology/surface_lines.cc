@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -162,21 +163,29 @@ void cut_protruding_lines(TopologyContext &context)
   }
 }
 
-/// Where a node outside comes back to the surface within its glide plane: the nearest point, or that on the way to a neighbour inside.
+/// Where a node outside comes back to the surface within its glide plane: the nearest point if it is near, or that on the way to a
+/// neighbour inside, but not the neighbour itself: one that lies on the surface counts as inside or outside by rounding.
 std::optional<Vec3> way_back(const TopologyContext &context, const NodeIndex i)
 {
   const Network &network = context.network;
   const GrainShape &shape = *context.shape;
   const Vec3 x = network.position(i);
   const double distance = shape.signed_distance(x);
-  constexpr double farthest =
-      4; // times the distance: the plane meets the surface at more than a quarter of a right angle
-  if (auto y = project_to_surface(shape, x, common_normal(network, i)); y && (*y - x).norm() < farthest * distance)
-    return y;
+  constexpr double near = 4; // times the distance: the plane meets the surface at more than a quarter of a right angle
+  const auto nearest = project_to_surface(shape, x, common_normal(network, i));
+  if (nearest && (*nearest - x).norm() < near * distance)
+    return nearest;
+  const double shortest_piece = 0.25 * context.settings.collision_radius;
+  double shortest_arm = std::numeric_limits<double>::infinity();
   for (const SegmentIndex s : network.connected_segments(i))
-    if (const Vec3 &q = network.position(network.other_end(s, i)); shape.signed_distance(q) < 0)
-      return surface_crossing(shape, q, x);
-  return std::nullopt;
+  {
+    const Vec3 &q = network.position(network.other_end(s, i));
+    shortest_arm = std::min(shortest_arm, (q - x).norm());
+    if (shape.signed_distance(q) < 0)
+      if (const Vec3 y = surface_crossing(shape, q, x); (y - q).norm() > shortest_piece)
+        return y;
+  }
+  return nearest && (*nearest - x).norm() < 0.5 * shortest_arm ? nearest : std::nullopt;
 }
 
 /// Nodes of a re-entrant grain that were made on lines which pass through an edge.

@@ -114,9 +114,19 @@ inline std::unique_ptr<GrainShape> random_grain(const GrainKind kind, Random &ra
   return std::make_unique<SurfaceMeshShape>(facetted_pillar(Vec3(0, 0, 0), d, 32));
 }
 
-/// One draw: grain, loops, motion. Everything follows from the seed.
+/// Where the lines of a draw begin.
+enum class Placement
+{
+  anywhere,
+  /// Where faces meet: centres on faces, edges and corners of the bounding box, some a little above or below; planes that contain or
+  /// graze faces and edges; loops larger than the grain; sources pinned at one or both ends on the surface.
+  at_edges
+};
+
+/// One draw: grain, loops, motion. Everything follows from seed and placement.
 struct SurfaceLoops : TopologyFixture
 {
+  Placement placement;
   Random random;
   GrainKind grain_kind;
   MotionKind motion;
@@ -129,7 +139,8 @@ struct SurfaceLoops : TopologyFixture
   std::array<Vec3, 6> waves;         ///< wave vectors and amplitudes of the flow
   static constexpr double speed = 3; ///< nm per step
 
-  explicit SurfaceLoops(const std::uint64_t seed) : random(seed)
+  explicit SurfaceLoops(const std::uint64_t seed, const Placement where = Placement::anywhere)
+      : placement(where), random(seed)
   {
     settings = {8, 24, 0.64, 1};
     settings.max_area = 115;
@@ -173,8 +184,14 @@ struct SurfaceLoops : TopologyFixture
     if (random() % 6 == 0) // on a face of the bounding box, in it or across it
       centre[static_cast<int>(random() % 3)] = low[static_cast<int>(random() % 3)];
     const SlipSystem &system = (*systems)[random() % systems->size()];
-    const double radius = uniform(random, 15, 90);
+    double radius = uniform(random, 15, 90);
     const std::uint64_t form = random() % 8;
+    if (placement == Placement::at_edges)
+    {
+      move_to_edge(centre);
+      if (random() % 4 == 0)
+        radius = uniform(random, 90, 250);
+    }
     if (form == 0)
     {
       PolygonLoop loop{{1, 1, 0}, system.burgers, centre, radius, 0};
@@ -183,12 +200,19 @@ struct SurfaceLoops : TopologyFixture
       add_polygon_loop(network, *systems, loop, settings.max_segment);
       return;
     }
-    const bool axial = form == 1;
-    const Vec3 n = axial ? Vec3(Vec3::UnitZ()) : system.normal, b = axial ? 0.286 * Vec3::UnitX() : system.burgers;
-    const PlaneIndex plane =
-        axial && !systems->orientation().rotation().isIdentity(0)
-            ? network.planes().find_or_insert({0, 0, 0}, n, centre)
-            : network.planes().find_or_insert(axial ? Miller{0, 0, 1} : system.plane_miller, n, centre);
+    const bool at_edges = placement == Placement::at_edges;
+    const bool axial = form == 1 || (at_edges && form > 4);
+    const auto axis = static_cast<Eigen::Index>(at_edges ? random() % 3 : 2);
+    const Vec3 n = axial ? Vec3(Vec3::Unit(axis)) : system.normal;
+    const Vec3 b = axial ? Vec3(0.286 * Vec3::Unit((axis + 1) % 3)) : system.burgers;
+    Miller miller = system.plane_miller;
+    if (axial)
+    {
+      miller = {0, 0, 0};
+      if (systems->orientation().rotation().isIdentity(0))
+        miller[static_cast<std::size_t>(axis)] = 1;
+    }
+    const PlaneIndex plane = network.planes().find_or_insert(miller, n, centre);
     stress -= (b * n.transpose() + n * b.transpose()) / b.squaredNorm();
     const bool source = form == 2;
     const Vec3 e1 = b.normalized(), e2 = n.cross(e1);
@@ -203,17 +227,38 @@ struct SurfaceLoops : TopologyFixture
     }
     if (source) // its first end lies on the surface, if there is one on the way
     {
-      const bool first_inside = shape->signed_distance(points.front()) < 0;
-      if (first_inside == (shape->signed_distance(points.back()) < 0))
-        return;
-      if (!first_inside)
-        std::ranges::reverse(points);
-      points = {points.front(), surface_crossing(*shape, points.front(), points.back())};
-      points.insert(points.begin() + 1, 0.5 * (points[0] + points[1]));
-      if ((points[2] - points[0]).norm() < settings.min_segment)
+      pin_at_surface(points);
+      if (points.empty())
         return;
     }
     add_line(network, points, b, plane, !source, NodeConstraint::pinned);
+  }
+
+  /// Moves a point to the nearest face, edge or corner of the bounding box, or a little off it.
+  void move_to_edge(Vec3 &x)
+  {
+    const Vec3 low = shape->lower_corner(), high = shape->upper_corner();
+    const std::uint64_t axes = 1 + random() % 7;
+    constexpr std::array<double, 5> offsets{0, 0, 1e-9, 0.3, -0.3}; // nm
+    for (int d = 0; d < 3; ++d)
+      if ((axes >> d & 1U) != 0)
+        x[d] = (random() % 2 == 0 ? low[d] : high[d]) + offsets[random() % offsets.size()];
+  }
+
+  /// Cuts a straight source to what is inside; its ends are pinned there, one or both on the surface. Empty if nothing is left.
+  void pin_at_surface(std::vector<Vec3> &points) const
+  {
+    const Vec3 middle = 0.5 * (points.front() + points.back());
+    const auto inside = [&](const Vec3 &x) { return shape->signed_distance(x) < 0; };
+    Vec3 p = points.front(), q = points.back();
+    points.clear();
+    if (inside(p) == inside(q) && (placement == Placement::anywhere || !inside(middle)))
+      return;
+    const Vec3 from = inside(p) ? p : inside(q) ? q : middle;
+    p = inside(p) ? p : surface_crossing(*shape, from, p);
+    q = inside(q) ? q : surface_crossing(*shape, from, q);
+    if ((q - p).norm() >= settings.min_segment)
+      points = {p, 0.5 * (p + q), q};
   }
 
   /// A line of almost no length that clipping has left in a corner.
@@ -351,12 +396,13 @@ struct DrawResult
 };
 
 /// Moves the loops of a seed until all have left or @p n_steps have passed.
-inline DrawResult run_draw(const std::uint64_t seed, const std::uint64_t n_steps)
+inline DrawResult run_draw(const std::uint64_t seed, const std::uint64_t n_steps,
+                           const Placement placement = Placement::anywhere)
 {
   DrawResult result;
   try
   {
-    SurfaceLoops draw(seed);
+    SurfaceLoops draw(seed, placement);
     result.description = draw.description();
     for (; result.steps < n_steps && draw.network.n_segments() > 0; ++result.steps)
       draw.step(result.steps);

@@ -17,13 +17,20 @@ TEST_P(RandomLoopsIn, ArriveSlideAndLeaveWithoutLosingFluxOrArea)
   for (std::uint64_t k = 0; k < 43; ++k)
   {
     const DrawResult r =
-        run_draw(100000 * n_grain_kinds + k * n_grain_kinds + static_cast<std::uint64_t>(GetParam()), 200);
+        run_draw(100000 * n_grain_kinds + k * n_grain_kinds + static_cast<std::uint64_t>(GetParam()), 200,
+                 k % 2 == 0 ? Placement::anywhere : Placement::at_edges);
     EXPECT_EQ(r.failure, "");
     left += r.left ? 1 : 0;
     exits += r.counts.surface_exits;
   }
   EXPECT_GT(left, 10U);
   EXPECT_GT(exits, 300U);
+}
+
+// The plane of the line is nearly tangent to the fillet, and a node outside has neighbours that lie on the surface up to rounding.
+TEST(LineAlongAnImpenetrableFillet, ComesBackBetweenItsNeighboursNotOntoOne)
+{
+  EXPECT_EQ(run_draw(5169, 60).failure, "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Grains, RandomLoopsIn, testing::Range(0, n_grain_kinds),
