@@ -1,11 +1,12 @@
 // Cost of the boundary-value problem in a step of a simulation, split into its parts, and the error that the tolerance of
 // the solve leaves in the stress at the segments.
 //
-//   mpirun -np RANKS ddfem_correction_benchmark DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE]]
+//   mpirun -np RANKS ddfem_correction_benchmark DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE [SOLVER]]]
 //
 // Cube of 1 micrometre with ELEMENTS per edge, clamped at z- and z+, filled with circular glide loops of 20 segments and
 // threading lines that end at the free faces, about SEGMENTS segments in all. Loops and lines move smoothly by about 0.5 nm
-// a step. TOLERANCE: of the solves of the steps, 1e-5 unless given. One line of output per quantity; times are wall times in seconds, medians over the steps after the first six.
+// a step. TOLERANCE: of the solves of the steps, 1e-5 unless given. SOLVER: multigrid (unless
+// given) or direct. One line of output per quantity; times are wall times in seconds, medians over the steps after the first six.
 #include "coupling/dislocation_tractions.h"
 #include "dd/geometry/grain_shape.h"
 #include "dd/microstructure/sources.h"
@@ -116,7 +117,7 @@ class Benchmark
 {
 public:
   Benchmark(const unsigned degree, const unsigned elements, const int segments, const int n_steps,
-            const double tolerance)
+            const double tolerance, const fem::Solver solver)
       : steps(n_steps), pieces(random_pieces(segments)), shape(Vec3::Zero(), Vec3::Constant(edge))
   {
     fem::MeshParameters parameters;
@@ -127,6 +128,7 @@ public:
     fem::ElasticProblem::Parameters elasticity;
     elasticity.degree = degree;
     elasticity.relative_tolerance = tolerance;
+    elasticity.solver = solver;
     const std::array<bool, 3> all{true, true, true};
     problem = std::make_unique<fem::ElasticProblem>(*mesh, elasticity, fem::Moduli{medium.mu, medium.nu},
                                                     std::vector<fem::DisplacementCondition>{{4, all}, {5, all}});
@@ -233,7 +235,7 @@ int main(int argc, char **argv)
 {
   if (argc < 4)
   {
-    std::fprintf(stderr, "usage: %s DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE]]\n", argv[0]);
+    std::fprintf(stderr, "usage: %s DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE [SOLVER]]]\n", argv[0]);
     return 2;
   }
   const int threads = omp_get_max_threads();
@@ -241,7 +243,8 @@ int main(int argc, char **argv)
   omp_set_num_threads(threads);
   const auto number = [&](const int i) { return static_cast<unsigned>(std::strtoul(argv[i], nullptr, 10)); };
   Benchmark(number(1), number(2), static_cast<int>(number(3)), argc > 4 ? static_cast<int>(number(4)) : 15,
-            argc > 5 ? std::strtod(argv[5], nullptr) : 1e-5)
+            argc > 5 ? std::strtod(argv[5], nullptr) : 1e-5,
+            argc > 6 && std::string(argv[6]) == "direct" ? fem::Solver::direct : fem::Solver::multigrid)
       .run();
   return 0;
 }

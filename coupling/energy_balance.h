@@ -30,6 +30,14 @@ struct LineWork
   double external = 0; ///< the part in it of the correction field (finite grain) or of the applied stress
   /// Of the correction (or applied stress) on what was swept besides: merging, splitting, remeshing, lines that leave.
   double topology = 0;
+
+  LineWork &operator+=(const LineWork &other)
+  {
+    total += other.total;
+    external += other.external;
+    topology += other.topology;
+    return *this;
+  }
 };
 
 /// Sums from the start of the run, MPa nm^3.

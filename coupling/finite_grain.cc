@@ -111,6 +111,7 @@ void FiniteGrain::set_unit_response()
   }
   problem->solve(pattern);
   unit_response = problem->solution();
+  unit_stress = problem->recovered_stress();
   load_per_motion = platen_load();
   modulus = load_per_motion * platen_motion->stress_per_load() / platen_motion->strain_per_motion();
   problem->set_start_vectors({}); // of no use for the field of the dislocations

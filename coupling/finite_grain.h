@@ -27,6 +27,7 @@ struct GrainSolution
   fem::TractionSummary tractions;                   ///< of the infinite field over the closed surface: must balance
   double force_imbalance = 0, moment_imbalance = 0; ///< see imbalance()
   fem::SolveInfo solve;
+  bool solved = true;         ///< false: extrapolated, with tractions and balance of the last solve
   double load_at_rest = 0;    ///< Q of the dislocations with the platen at rest, see PlatenMotion
   double motion = 0;          ///< q of the platen
   double load = 0;            ///< Q = load_at_rest + q times the response to unit motion
@@ -78,6 +79,25 @@ public:
   /// Both: the correction at the platen motion @p q.
   GrainSolution solve(const LineSystem &lines, double q);
   BoundaryState boundary_state() const;
+
+  /// What the finite elements know of a solve at rest: unknowns and load, locally owned.
+  struct ElementState
+  {
+    std::vector<double> unknowns, load;
+  };
+  ElementState element_state() const;
+  /// Takes @p state instead of solving, with the images of @p lines, and adds as much of the response to unit motion as
+  /// gives the load at rest @p load_at_rest (MPa nm^2, see PlatenMotion). Completes @p solution, that of the last solve.
+  void extrapolate_to(const LineSystem &lines, const ElementState &state, double load_at_rest, GrainSolution &solution);
+  /// Change of the load at rest by what lines have swept, exact but for the elements (Betti): minus the work of the stress of unit
+  /// motion. Collective.
+  double load_of_swept_area(const SweptArea &area) const;
+  /// Depth (nm) of a point under the surface as far as the finite elements see it: under faces with images it is the depth of the
+  /// images, or the distance from a held face if that is less.
+  double depth_for_elements(const Vec3 &x) const;
+  double element_size() const; ///< edge of the cube of the mean volume of the elements, nm
+  const std::vector<ImagePlane> &planes_with_images() const { return planes_of_images; }
+  double depth_of_images() const { return planes_of_images.empty() ? 0.0 : image_settings.depth; } ///< nm
   MPI_Comm mpi_communicator() const { return communicator; }
   /// Correction stress at points inside the grain, MPa: finite elements and images of the last solve; the same bits on all
   /// ranks.
@@ -122,8 +142,9 @@ private:
   std::unique_ptr<fem::ElasticProblem> problem;
   std::vector<dealii::Tensor<1, 3>> pattern; ///< displacement at the boundary nodes for q = 1, zero off the platen
   std::vector<double> unit_response,
-      at_rest;                ///< unknowns of this rank: of q = 1 without dislocations; of the last solve at rest
-  double load_per_motion = 0; ///< Q per q
+      at_rest;                     ///< unknowns of this rank: of q = 1 without dislocations; of the last solve at rest
+  std::vector<double> unit_stress; ///< recovered, of q = 1
+  double load_per_motion = 0;      ///< Q per q
   std::vector<ImagePlane> planes_of_images;
   ImageSettings image_settings;
   SurfaceImages images;                                    ///< of the lines of the last solve

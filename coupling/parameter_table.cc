@@ -133,6 +133,14 @@ void add_domain(std::vector<ParameterEntry> &t)
   t.push_back({s, "Element degree", "2", count(1, 2), "", "Polynomial degree of the elements: 1 or 2."});
   t.push_back(
       {s, "Elastic tolerance", "1e-7", between(1e-14, 1e-2), "", "Residual of the FEM solve relative to its load."});
+  t.push_back(
+      {s, "Elastic solver", "automatic", one_of("automatic|multigrid|direct"), "",
+       "Preconditioner of the conjugate gradients: algebraic multigrid, or a factorisation that is kept (MUMPS), which "
+       "takes more time once and more memory. Automatic: by the number of unknowns."});
+  t.push_back({s, "Correction tolerance", "1e-3", between(0, 0.1), "",
+               "Steps do without an elastic solve as long as the error that this makes in the segment forces is "
+               "estimated below "
+               "this fraction of the force of the correction; 0: every step solves."});
   t.push_back({s, "Traction tolerance", "1e-6", between(1e-12, 1e-2), "",
                "Relative error aimed at in the integrals of the infinite-body tractions over the boundary."});
   t.push_back({s, "Image depth", "4", not_negative(), "element edges",

@@ -178,6 +178,11 @@ void read_grain(const InputDeck &deck, Parameters &p)
   p.grain.elasticity.degree = deck.integer("Domain/Element degree");
   p.grain.elasticity.relative_tolerance = deck.number("Domain/Elastic tolerance");
   p.grain.elasticity.traction_tolerance = deck.number("Domain/Traction tolerance");
+  const std::string solver = deck.text("Domain/Elastic solver");
+  p.grain.elasticity.solver = solver == "automatic"   ? fem::Solver::automatic
+                              : solver == "multigrid" ? fem::Solver::multigrid
+                                                      : fem::Solver::direct;
+  p.grain.correction_tolerance = deck.number("Domain/Correction tolerance");
   p.grain.image_depth = deck.number("Domain/Image depth");
   p.grain.fixed_face = deck.text("Boundary conditions/Fixed face");
   p.grain.platen_face = deck.text("Boundary conditions/Platen face");

@@ -46,7 +46,8 @@ struct GrainParameters
   std::vector<std::string> impenetrable_faces;
   ReferenceState reference = ReferenceState::relaxed;
   RayDirection ray_direction = RayDirection::normal;
-  double image_depth = 4; ///< lines nearer than this many elements to a flat free face get analytic images
+  double correction_tolerance = 0; ///< see CorrectionUpdate
+  double image_depth = 4;          ///< lines nearer than this many elements to a flat free face get analytic images
 };
 
 enum class LoadingType

@@ -53,6 +53,7 @@ Simulation::Simulation(const Parameters &p, MPI_Comm comm)
   if (p.mode == Mode::finite)
   {
     finite_grain = std::make_unique<FiniteGrain>(p.grain, p.medium, communicator);
+    update = std::make_unique<CorrectionUpdate>(*finite_grain, p.medium, p.grain.correction_tolerance);
     if (p.cut_at_surface)
       clip_to_grain(dislocations, finite_grain->shape(), 0.1 * p.topology.min_segment);
     fit_into_grain(dislocations, finite_grain->shape(), p.topology.min_segment);
@@ -118,7 +119,7 @@ void Simulation::solve_lines()
 {
   if (!finite_grain)
     return;
-  solution = finite_grain->solve_at_rest(closed_line_system());
+  solution = update->solve_at_rest(closed_line_system(), dislocations);
   if (solution.force_imbalance > max_imbalance || solution.moment_imbalance > max_imbalance)
     throw std::runtime_error("the tractions of the dislocations over the closed surface do not balance: net force " +
                              std::to_string(solution.force_imbalance) + ", net moment " +
@@ -130,8 +131,17 @@ void Simulation::update_correction(const LineWork &lines)
   const Timing::Scope scope(timing, "elastic solve");
   solve_lines();
   update_loading(lines);
-  if (finite_grain)
-    correction = finite_grain->correction_at_segments(dislocations);
+  read_correction();
+}
+
+void Simulation::read_correction()
+{
+  if (!finite_grain)
+    return;
+  correction = finite_grain->correction_at_segments(dislocations);
+  update->set_scale(dislocations, correction);
+  if (observer)
+    observer(*finite_grain, closed_line_system());
 }
 
 void Simulation::start()
@@ -141,8 +151,7 @@ void Simulation::start()
     finite_grain->set_reference(dislocations, closed_line_system());
   solve_lines();
   start_loading();
-  if (finite_grain)
-    correction = finite_grain->correction_at_segments(dislocations);
+  read_correction();
 }
 
 IntegratorStep Simulation::move_lines()
@@ -203,7 +212,10 @@ void Simulation::book(LineWork &work)
   work.topology = work_on_swept_area() - work.external;
   total_plastic_strain += plastic_strain_volume(swept) / reference_volume();
   if (finite_grain)
+  {
     finite_grain->add_swept(swept);
+    update->add_swept(swept);
+  }
   swept.clear();
 }
 

@@ -1,6 +1,7 @@
 // The time loop.
 #pragma once
 
+#include "coupling/correction_update.h"
 #include "coupling/energy_balance.h"
 #include "coupling/finite_grain.h"
 #include "coupling/initial_network.h"
@@ -14,8 +15,10 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace ddfem::coupling
 {
@@ -58,6 +61,12 @@ public:
   double nominal_strain() const { return load_state().strain; }
   std::size_t stage() const { return loading.stage(); } ///< of the loading, from 0
   const EnergyBalance &energy_balance() const { return energy; }
+  /// Null outside finite mode.
+  const CorrectionUpdate *correction_update() const { return update.get(); }
+  const GrainSolution &grain_solution() const { return solution; }
+  /// Called after the correction of each step, extrapolated or solved, with the sources of the boundary-value problem.
+  using Observer = std::function<void(FiniteGrain &, const LineSystem &)>;
+  void observe_correction(Observer called) { observer = std::move(called); }
   /// Stress that acts on the dislocations besides their own fields in periodic and infinite mode, MPa.
   SymTensor applied_stress() const;
 
@@ -69,9 +78,11 @@ private:
   TopologyContext topology_context(std::vector<Vec3> displacement);
   void solve_lines();
   void update_correction(const LineWork &lines);
+  void read_correction();
   void start_loading();
   void update_loading(const LineWork &lines);
   void apply_load(const LineWork &lines);
+  void balance_energy();
   BodyResponse body_response() const;
   LineWork work_of_step(const IntegratorStep &step) const;
   double work_on_swept_area() const;
@@ -97,7 +108,10 @@ private:
   ProductPlane product_plane;
   StabilisedRungeKutta integrator;
   SegmentField correction; ///< of the last solve, at the segments
+  std::unique_ptr<CorrectionUpdate> update;
   GrainSolution solution;
+  Observer observer;
+  LineWork work_since_balance; ///< of steps whose correction was extrapolated
   Loading loading;
   EnergyBalance energy;
   std::vector<Vec3> forces_at_start, forces_at_end; ///< of the lines in the last step, MPa nm^2, by NodeIndex::value

@@ -63,6 +63,7 @@ void Simulation::update_loading(const LineWork &lines)
   apply_load(lines);
   while (parameters.loading.type == LoadingType::stages && loading.stage_over())
   {
+    balance_energy();
     loading.next_stage(body_response());
     apply_load({}); // a change of load at fixed lines, which may be a jump
   }
@@ -76,7 +77,19 @@ void Simulation::apply_load(const LineWork &lines)
     return;
   }
   finite_grain->move_platen(solution, loading.state().strain / finite_grain->platen().strain_per_motion());
-  energy.add(finite_grain->boundary_state(), lines, communicator);
+  work_since_balance += lines;
+  if (solution.solved)
+    balance_energy();
+}
+
+/// An extrapolated state holds displacements and loads of different times to first order: its energies would show what was swept
+/// since the last solve as a mismatch. The steps between two solves are therefore balanced as one.
+void Simulation::balance_energy()
+{
+  if (!finite_grain)
+    return;
+  energy.add(finite_grain->boundary_state(), work_since_balance, communicator);
+  work_since_balance = {};
 }
 
 LineWork Simulation::work_of_step(const IntegratorStep &step) const

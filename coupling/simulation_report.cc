@@ -115,6 +115,9 @@ void Simulation::report(RunOutput &output, const IntegratorStep &step, const boo
                ", surface exits " + std::to_string(counts.surface_exits) + ", segments halved " +
                std::to_string(counts.refinements) + ", nodes removed " + std::to_string(counts.coarsenings));
     output.log(energy_line());
+    if (update)
+      output.log("elastic solves " + std::to_string(update->counts().solves) + ", steps without " +
+                 std::to_string(update->counts().skips));
     write_file(output.directory() + "/timing.txt", timing.table());
   }
 }

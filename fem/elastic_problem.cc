@@ -1,236 +1,19 @@
 #include "fem/elastic_problem.h"
 
-#include "fem/boundary_load.h"
-#include "fem/elastic_system.h"
+#include "fem/elastic_problem_implementation.h"
 #include "fem/mesh.h"
-#include "fem/point_locator.h"
 #include "fem/problem_setup.h"
 #include "fem/require.h"
-#include "fem/start_vectors.h"
-#include "fem/stress_recovery.h"
 #include "fem/surface_output.h"
-#include "fem/trace_projection.h"
 
 #include <chrono>
-#include <cmath>
-#include <map>
-#include <set>
-#include <stdexcept>
 
 namespace ddfem::fem
 {
-namespace
-{
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start)
-{
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::set<dealii::types::boundary_id> boundaries_of(const std::vector<DisplacementCondition> &conditions)
-{
-  std::set<dealii::types::boundary_id> boundaries;
-  for (const DisplacementCondition &condition : conditions)
-  {
-    boundaries.insert(condition.boundary);
-  }
-  return boundaries;
-}
-} // namespace
-
-class ElasticProblem::Implementation
-{
-public:
-  Implementation(const Triangulation &triangulation, const Parameters &given, const Moduli &moduli,
-                 const std::vector<DisplacementCondition> &displacement_conditions)
-      : parameters(given), conditions(displacement_conditions), grid(triangulation, given.degree),
-        areas(boundary_areas(triangulation, given.degree)), volume_centre(volume_and_centre(grid)),
-        condition_of(assign_conditions(grid, conditions)),
-        system(grid, flags_of(condition_of), lame_lambda(moduli), moduli.mu, volume_centre.second,
-               std::cbrt(volume_centre.first)),
-        boundary_load(grid, volume_centre.second, given.traction_tolerance),
-        projection(grid, boundaries_of(conditions), projection_tolerance),
-        recovery(grid, lame_lambda(moduli), moduli.mu, given.recovery == Recovery::patches),
-        locator(grid, given.outside_tolerance), field_load(system.make_vector()), uniform_load(system.make_vector()),
-        displacement(system.make_vector()), starts(system, given.n_start_vectors)
-  {
-    displacement.update_ghost_values();
-    for (unsigned node = 0; node < grid.n_owned_nodes; ++node)
-    {
-      if (!grid.node_boundaries[node].empty())
-      {
-        boundary_nodes.push_back(node);
-        points.push_back(grid.positions[node]);
-        ids.push_back(grid.node_boundaries[node]);
-        const auto &k = condition_of[node];
-        prescribed.push_back({k[0] >= 0, k[1] >= 0, k[2] >= 0});
-      }
-    }
-  }
-
-  SolveInfo solve(const std::vector<dealii::Tensor<1, 3>> &values);
-  NodalVector nodal_reactions() const;
-  /// Sum of term(x, force) over the nodes x (nm) where the conditions of a boundary exert a force.
-  template <class NodeTerm>
-  dealii::Tensor<1, 3> sum_of_reactions(dealii::types::boundary_id boundary, NodeTerm &&term) const;
-  std::vector<dealii::Tensor<1, 3>> at_boundary(const NodalVector &vector) const;
-  const std::vector<double> &stress() const;
-  void set_displacement(const NodalVector &owned_values);
-  NodalVector from_owned(const std::vector<double> &values) const;
-  std::vector<double> owned(const NodalVector &vector) const { return {vector.begin(), vector.end()}; }
-
-  /// A vector with the given values at boundary_points() and zero elsewhere; only prescribed components, if asked for.
-  NodalVector from_boundary(const std::vector<dealii::Tensor<1, 3>> &values, bool only_prescribed) const;
-
-  Parameters parameters;
-  const std::vector<DisplacementCondition> conditions;
-  const NodalGrid grid;
-  const std::map<dealii::types::boundary_id, double> areas;
-  const std::pair<double, dealii::Point<3>> volume_centre;
-  const std::vector<std::array<int, 3>> condition_of;
-  const ElasticSystem system;
-  const BoundaryLoad boundary_load;
-  const TraceProjection projection;
-  const StressRecovery recovery;
-  mutable PointLocator locator;
-  NodalVector field_load, uniform_load;
-  NodalVector displacement;                 // with ghost values
-  mutable std::vector<double> nodal_stress; // empty until asked for
-  std::vector<unsigned> boundary_nodes;
-  std::vector<dealii::Point<3>> points;
-  std::vector<std::array<bool, 3>> prescribed;
-  std::vector<std::vector<dealii::types::boundary_id>> ids;
-  double setup_time = 0.;
-  StartVectors starts;
-};
-
-NodalVector ElasticProblem::Implementation::from_boundary(const std::vector<dealii::Tensor<1, 3>> &values,
-                                                          bool only_prescribed) const
-{
-  require(values.size() == points.size(), "displacements are given at ", values.size(), " points instead of the ",
-          points.size(), " boundary points");
-  NodalVector vector = system.make_vector();
-  for (std::size_t i = 0; i < values.size(); ++i)
-  {
-    for (unsigned c = 0; c < 3; ++c)
-    {
-      vector.local_element(3 * boundary_nodes[i] + c) = only_prescribed && !prescribed[i][c] ? 0. : values[i][c];
-    }
-  }
-  return vector;
-}
-
-NodalVector ElasticProblem::Implementation::from_owned(const std::vector<double> &values) const
-{
-  NodalVector vector = system.make_vector();
-  require(values.size() == vector.locally_owned_size(), "a solution with ", values.size(),
-          " unknowns is given instead of ", vector.locally_owned_size());
-  std::copy(values.begin(), values.end(), vector.begin());
-  return vector;
-}
-
-void ElasticProblem::Implementation::set_displacement(const NodalVector &owned_values)
-{
-  displacement.zero_out_ghost_values();
-  displacement.copy_locally_owned_data_from(owned_values);
-  displacement.update_ghost_values();
-  nodal_stress.clear();
-}
-
-SolveInfo ElasticProblem::Implementation::solve(const std::vector<dealii::Tensor<1, 3>> &values)
-{
-  const auto start_time = Clock::now();
-  NodalVector total = from_boundary(values, true);
-  NodalVector load = field_load;
-  load += uniform_load;
-  system.lift(total, load);
-  const double given_norm = load.l2_norm();
-  if (!std::isfinite(given_norm))
-  {
-    throw std::runtime_error(
-        "the load of the elastic problem is not finite: check tractions and prescribed displacements");
-  }
-  const double removed = system.remove_resultant(load);
-  const double norm = load.l2_norm();
-  SolveInfo info;
-  NodalVector x = system.make_vector();
-  constexpr double nothing = 1e-200;
-  if (norm > nothing)
-  {
-    x = starts.best(load);
-    const auto convergence = system.solve(x, load, parameters.relative_tolerance * norm, parameters.max_iterations);
-    info.iterations = convergence.iterations;
-    info.initial_residual = convergence.initial_residual / norm;
-    info.final_residual = convergence.final_residual / norm;
-    info.unbalanced_load = removed / given_norm;
-    starts.remember(x);
-  }
-  total += x;
-  set_displacement(total);
-  info.seconds = seconds_since(start_time);
-  return info;
-}
-
-NodalVector ElasticProblem::Implementation::nodal_reactions() const
-{
-  NodalVector load = field_load, residual = system.make_vector();
-  load += uniform_load;
-  system.reactions(displacement, load, residual);
-  return residual;
-}
-
-template <class NodeTerm>
-dealii::Tensor<1, 3> ElasticProblem::Implementation::sum_of_reactions(dealii::types::boundary_id boundary,
-                                                                      NodeTerm &&term) const
-{
-  const NodalVector residual = nodal_reactions();
-  dealii::Tensor<1, 3> sum;
-  for (std::size_t i = 0; i < boundary_nodes.size(); ++i)
-  {
-    dealii::Tensor<1, 3> force;
-    for (unsigned c = 0; c < 3; ++c)
-    {
-      const int k = condition_of[boundary_nodes[i]][c];
-      if (k >= 0 && conditions[static_cast<std::size_t>(k)].boundary == boundary)
-      {
-        force[c] = residual.local_element(3 * boundary_nodes[i] + c);
-      }
-    }
-    sum += term(points[i], force);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sum.begin_raw(), 3, MPI_DOUBLE, MPI_SUM, grid.communicator);
-  return sum;
-}
-
-std::vector<dealii::Tensor<1, 3>> ElasticProblem::Implementation::at_boundary(const NodalVector &vector) const
-{
-  std::vector<dealii::Tensor<1, 3>> result;
-  result.reserve(boundary_nodes.size());
-  for (const unsigned node : boundary_nodes)
-  {
-    result.push_back(dealii::Tensor<1, 3>(
-        {vector.local_element(3 * node), vector.local_element(3 * node + 1), vector.local_element(3 * node + 2)}));
-  }
-  return result;
-}
-
-const std::vector<double> &ElasticProblem::Implementation::stress() const
-{
-  int empty = nodal_stress.empty() ? 1 : 0;
-  // A rank without cells always has none: all must agree to take part.
-  MPI_Allreduce(MPI_IN_PLACE, &empty, 1, MPI_INT, MPI_MAX, grid.communicator);
-  if (empty != 0)
-  {
-    nodal_stress = recovery.recover(displacement);
-  }
-  return nodal_stress;
-}
-
 ElasticProblem::ElasticProblem(const Triangulation &triangulation, const Parameters &parameters, const Moduli &moduli,
                                const std::vector<DisplacementCondition> &conditions)
 {
-  const auto start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   check(parameters);
   check(moduli);
   const auto areas = boundary_areas(triangulation, 1);
@@ -240,7 +23,7 @@ ElasticProblem::ElasticProblem(const Triangulation &triangulation, const Paramet
             ", which the mesh does not have");
   }
   implementation = std::make_unique<Implementation>(triangulation, parameters, moduli, conditions);
-  implementation->setup_time = seconds_since(start);
+  implementation->setup_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 ElasticProblem::~ElasticProblem() = default;
@@ -333,7 +116,20 @@ std::vector<dealii::Tensor<1, 3>> ElasticProblem::boundary_loads() const
 
 std::vector<dealii::SymmetricTensor<2, 3>> ElasticProblem::stress_at(const std::vector<dealii::Point<3>> &points) const
 {
-  const auto values = implementation->locator.evaluate(points, 6, implementation->stress());
+  return stress_at(points, implementation->stress());
+}
+
+std::vector<double> ElasticProblem::recovered_stress() const
+{
+  return implementation->stress();
+}
+
+std::vector<dealii::SymmetricTensor<2, 3>> ElasticProblem::stress_at(const std::vector<dealii::Point<3>> &points,
+                                                                     const std::vector<double> &recovered) const
+{
+  require(recovered.size() == 6 * implementation->grid.positions.size(), "a recovered stress has ", recovered.size(),
+          " numbers instead of six for each of the ", implementation->grid.positions.size(), " nodes");
+  const auto values = implementation->locator.evaluate(points, 6, recovered);
   std::vector<dealii::SymmetricTensor<2, 3>> result(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
@@ -373,6 +169,16 @@ std::vector<double> ElasticProblem::solution() const
 void ElasticProblem::set_solution(const std::vector<double> &values)
 {
   implementation->set_displacement(implementation->from_owned(values));
+}
+
+std::vector<double> ElasticProblem::field_load() const
+{
+  return implementation->owned(implementation->field_load);
+}
+
+void ElasticProblem::set_field_load(const std::vector<double> &values)
+{
+  implementation->field_load = implementation->from_owned(values);
 }
 
 std::vector<std::vector<double>> ElasticProblem::start_vectors() const

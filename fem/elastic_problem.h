@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fem/solver.h"
 #include "fem/traction_field.h"
 #include "fem/triangulation.h"
 
@@ -44,8 +45,8 @@ struct SolveInfo
 
 /// The correction problem of a grain: div sigma^ = 0, sigma^ n = -sigma~ n on the boundary, u^ prescribed where
 /// displacement conditions say so (van der Giessen & Needleman, MSMSE 3 (1995) 689). Isotropic linear elasticity with
-/// Q1 or Q2 hexahedra and a mapping of the same degree. The matrix and its algebraic multigrid preconditioner are set
-/// up once.
+/// Q1 or Q2 hexahedra and a mapping of the same degree. The matrix and its preconditioner (multigrid or a factorisation) are
+/// set up once.
 ///
 /// Rigid-body motions that the displacement conditions leave free are found automatically. They are removed by
 /// projection: the load is made self-equilibrated by the uniform inertia force it would cause, and the displacement is
@@ -69,6 +70,7 @@ public:
     /// Norm of the residual over the norm of the load, prescribed displacements included.
     double relative_tolerance = 1e-8;
     unsigned max_iterations = 1000;
+    Solver solver = Solver::automatic;
     /// Aimed-at relative error of the integrals of the tractions.
     double traction_tolerance = 1e-6;
     /// Each solve starts from that combination of this many last solutions which is best in the energy norm (Fischer,
@@ -142,6 +144,12 @@ public:
   /// the same bits. Calls with the same index for about the same point are faster (it starts in the cell of the
   /// previous call). Throws std::runtime_error for a point farther outside the mesh than Parameters::outside_tolerance.
   std::vector<dealii::SymmetricTensor<2, 3>> stress_at(const std::vector<dealii::Point<3>> &points) const;
+  /// Recovered stress of the solution as it is now: six numbers for each node of this rank's cells, for the next function.
+  /// Collective.
+  std::vector<double> recovered_stress() const;
+  /// As stress_at(), of a recovered stress that was kept.
+  std::vector<dealii::SymmetricTensor<2, 3>> stress_at(const std::vector<dealii::Point<3>> &points,
+                                                       const std::vector<double> &recovered) const;
   /// Displacement u^ (nm) at points; as stress_at().
   std::vector<dealii::Tensor<1, 3>> displacement_at(const std::vector<dealii::Point<3>> &points) const;
 
@@ -150,6 +158,11 @@ public:
   /// Replaces the solution, and with it displacements, reactions (with the loads as they are now) and stresses, but not
   /// what the next solve starts from. Throws std::invalid_argument for a wrong size.
   void set_solution(const std::vector<double> &values);
+
+  /// Locally owned unknowns of the load of set_tractions(), for superposition. Local.
+  std::vector<double> field_load() const;
+  /// Replaces that load (for reactions and the next solve). Throws std::invalid_argument for a wrong size.
+  void set_field_load(const std::vector<double> &values);
 
   /// What the next solve starts from: locally owned unknowns of at most
   /// Parameters::n_start_vectors solutions, the most recent first. With the

@@ -1,22 +1,19 @@
 #pragma once
 
 #include "fem/nodal_grid.h"
+#include "fem/preconditioner.h"
 #include "fem/rigid_modes.h"
 
 #include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/lac/trilinos_precondition.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <array>
-#include <functional>
+#include <memory>
 #include <vector>
 
 namespace ddfem::fem
 {
-/// Unknowns: three components for each node, over NodalGrid::partitioner, with room for the ghosts.
-using NodalVector = dealii::LinearAlgebra::distributed::Vector<double>;
-
-/// The linear system of the grain: stiffness (MPa nm), its multigrid preconditioner, the free rigid-body modes.
+/// The linear system of the grain: stiffness (MPa nm), its preconditioner, the free rigid-body modes.
 ///
 /// Only what is used is stored: the stiffness between free unknowns, with rows and columns of prescribed ones replaced
 /// by a diagonal, and the full rows of the prescribed unknowns, which by symmetry give both the lifting and the
@@ -34,7 +31,7 @@ public:
   /// Collective. `prescribed`: one flag for each local node and component. Lambda, mu in MPa; centre, length: of the
   /// grain, nm.
   ElasticSystem(const NodalGrid &grid, const std::vector<std::array<bool, 3>> &prescribed, double lambda, double mu,
-                const dealii::Point<3> &centre, double length);
+                const dealii::Point<3> &centre, double length, Solver solver);
 
   NodalVector make_vector() const { return NodalVector(grid.partitioner); }
 
@@ -60,7 +57,6 @@ private:
   void make_sparsity();
   void add_cell(unsigned cell, const std::vector<double> &stiffness);
   void make_modes(const dealii::Point<3> &centre, double length);
-  void make_preconditioner(const dealii::Point<3> &centre, double length);
   void precondition(NodalVector &result, const NodalVector &residual) const;
   bool is_prescribed(unsigned local_dof) const { return prescribed[local_dof / 3][local_dof % 3]; }
 
@@ -69,8 +65,7 @@ private:
   bool any_prescribed = false;
   dealii::TrilinosWrappers::SparseMatrix matrix;          // free x free, diagonal for the rest
   dealii::TrilinosWrappers::SparseMatrix prescribed_rows; // full rows of prescribed unknowns, empty elsewhere
-  std::vector<double> near_null_space;                    // ML keeps a pointer to it
-  dealii::TrilinosWrappers::PreconditionAMG preconditioner;
+  std::unique_ptr<Preconditioner> preconditioner;
   std::vector<NodalVector> modes;          // free rigid motions, orthonormal with respect to the volume integral
   std::vector<NodalVector> weighted_modes; // int N . mode dV
   mutable NodalVector scratch;

@@ -175,7 +175,9 @@ void PatchFit::make_contributions()
         {
           of_entity = of_entity && (index[d] == side[d] || (index[d] != 0 && index[d] != p));
         }
-        if (of_entity && valid(corner(cell, v)))
+        // Linear fits reach to the surface: one Gauss point a cell says nothing about the gradient there.
+        const bool to_surface = p == 1 && !valid(grid.nodes_of(cell)[a]);
+        if ((of_entity || to_surface) && valid(corner(cell, v)))
         {
           weights[{grid.nodes_of(cell)[a], corner(cell, v)}] += 1.;
         }

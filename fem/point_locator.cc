@@ -158,14 +158,17 @@ bool PointLocator::invert_mapping(unsigned cell, const dealii::Point<3> &x, deal
   return false;
 }
 
-PointLocator::Place PointLocator::locate(const dealii::Point<3> &x, unsigned hint) const
+PointLocator::Place PointLocator::locate(const dealii::Point<3> &x, const std::array<unsigned, 2> &tried) const
 {
   Place best{no_cell, {}, far};
   dealii::Point<3> xi;
-  // Only where no other cell can claim the point: the result must not depend on the hint.
-  if (hint != no_cell && invert_mapping(hint, x, xi) && strictly_inside(xi))
+  for (const unsigned hint : tried)
   {
-    return {hint, xi, 0.};
+    // Only where no other cell can claim the point: the result must not depend on the hint.
+    if (hint != no_cell && invert_mapping(hint, x, xi) && strictly_inside(xi))
+    {
+      return {hint, xi, 0.};
+    }
   }
   if (boxes.empty())
   {
@@ -215,17 +218,29 @@ void PointLocator::elect(const std::vector<dealii::Point<3>> &points, const std:
   }
 }
 
+std::vector<PointLocator::Place> PointLocator::locate(const std::vector<dealii::Point<3>> &points)
+{
+  // Shorter lists leave the rest of the hints as they are: lists of several kinds alternate.
+  hints.resize(std::max(hints.size(), points.size()), no_cell);
+  std::vector<Place> places(points.size());
+#pragma omp parallel
+  {
+    unsigned previous = no_cell; // cell of the point before in this thread's part
+#pragma omp for schedule(static)
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      places[i] = locate(points[i], {hints[i], previous});
+      previous = places[i].cell;
+      hints[i] = previous;
+    }
+  }
+  return places;
+}
+
 std::vector<double> PointLocator::evaluate(const std::vector<dealii::Point<3>> &points, unsigned n_components,
                                            const std::vector<double> &fields)
 {
-  hints.resize(points.size(), no_cell);
-  std::vector<Place> places(points.size());
-#pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    places[i] = locate(points[i], hints[i]);
-    hints[i] = places[i].cell;
-  }
+  const std::vector<Place> places = locate(points);
   std::vector<int> winners;
   elect(points, places, winners);
   std::vector<double> values(points.size() * n_components, 0.);

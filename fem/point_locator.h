@@ -14,6 +14,8 @@ namespace ddfem::fem
 ///
 /// Every rank looks in its own cells. A point is evaluated by the rank whose cell contains it (the lowest, if several
 /// do), or for a point just outside the mesh by the one whose cell is nearest in unit coordinates, clamped to the cell.
+/// The search starts in the cell where the point of the same number was in the last call, then in that of the point before
+/// it in the list: a point of the same segment when the list has been renumbered.
 class PointLocator
 {
 public:
@@ -41,7 +43,9 @@ private:
   {
     return (std::size_t{bin[2]} * n_bins[1] + bin[1]) * n_bins[0] + bin[0];
   }
-  Place locate(const dealii::Point<3> &x, unsigned hint) const;
+  std::vector<Place> locate(const std::vector<dealii::Point<3>> &points);
+  /// `tried`: cells to look in first.
+  Place locate(const dealii::Point<3> &x, const std::array<unsigned, 2> &tried) const;
   /// False when the point is not near the cell.
   bool invert_mapping(unsigned cell, const dealii::Point<3> &x, dealii::Point<3> &xi) const;
   void elect(const std::vector<dealii::Point<3>> &points, const std::vector<Place> &places,

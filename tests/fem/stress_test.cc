@@ -4,6 +4,7 @@
 #include <deal.II/distributed/tria_base.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <unistd.h>
@@ -156,6 +157,40 @@ TEST(Stress, IsTheSameOnAllRanksAndDoesNotDependOnEarlierCalls)
   MPI_Allreduce(bits.data(), largest.data(), n, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
   MPI_Allreduce(bits.data(), smallest.data(), n, MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
   EXPECT_EQ(largest, smallest);
+}
+
+TEST(Stress, PointsThatMoveOrAreRenumberedGetTheirCells)
+{
+  const auto mesh = make_mesh(MPI_COMM_WORLD, cylinder(100., 300., 5, 4));
+  ElasticProblem problem(*mesh, {}, copper, everywhere(*mesh)), other(*mesh, {}, copper, everywhere(*mesh));
+  const PointForce force{Point(50., 140., 180.), Vector({3e5, -2e5, 4e5}), copper};
+  for (ElasticProblem *const p : {&problem, &other})
+  {
+    p->solve(prescribe(*p, [&](const Point &x) { return force.displacement(x); }));
+  }
+  auto points = scattered_points(Point(-60., -60., 20.), Point(60., 60., 200.), 400);
+  for (unsigned step = 0; step < 12; ++step)
+  {
+    // From less than a cell to several cells a step; every third step the list is turned round, every fourth only its
+    // first part is asked for.
+    for (auto &x : points)
+    {
+      x[2] += 1.5 * step;
+      x[0] = -x[0] * 0.97;
+    }
+    if (step % 3 == 2)
+    {
+      std::reverse(points.begin(), points.end());
+    }
+    if (step % 4 == 3)
+    {
+      problem.stress_at({points.begin(), points.begin() + 37});
+    }
+    const auto cached = problem.stress_at(points);
+    // Another list in between: the other object remembers nothing of these points.
+    other.stress_at(scattered_points(Point(-60., -60., 20. * step), Point(60., 60., 20. * step + 10.), 400));
+    EXPECT_EQ(cached, other.stress_at(points)) << step;
+  }
 }
 
 TEST(Stress, DoesNotDependOnTheNumberOfRanks)
