@@ -81,7 +81,9 @@ TEST(StabilisedRungeKutta, HeldNodesDoNotMoveNotEvenByRounding)
   EXPECT_GT(step.stages, 5U);
   for (const NodeIndex i : n.nodes())
     if (n.constraint(i) == NodeConstraint::pinned)
+    {
       EXPECT_TRUE(step.displacement[i.value].isZero(0));
+    }
 }
 
 TEST(StabilisedRungeKutta, StepsFarBeyondTheEulerLimitStayStable)
