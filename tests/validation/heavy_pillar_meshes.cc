@@ -60,11 +60,11 @@ int main(int argc, char **argv)
                           {"4 x 4 x 8, distorted", {4, 8}, 2, true},
                           {"8 x 8 x 16, linear", {8, 16}, 1, false},
                           {"8 x 8 x 16", {8, 16}, 2, false}});
+               // Linear elements do not reach the round surface to which lines slide: no run on them.
                if (only != "square")
                  compare(report, Section::circle,
                          {{"6 across, 8 along", {6, 8}, 2, false},
                           {"6 across, 8 along, distorted", {6, 8}, 2, true},
-                          {"8 across, 12 along, linear", {8, 12}, 1, false},
                           {"8 across, 12 along", {8, 12}, 2, false}});
              });
 }

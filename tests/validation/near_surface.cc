@@ -77,7 +77,7 @@ void straight_lines(Report &report, const double image_depth, const unsigned deg
 double error_of_elements(const double h, const unsigned degree, const bool screw)
 {
   const IsotropicMedium m{50e3, 0.3, 0.01};
-  const double b = 0.25, end = 4000, half_width = 3, depth = 4;
+  const double b = 0.25, end = 4e5, half_width = 3, depth = 4;
   Network network;
   const Vec3 burgers = screw ? Vec3(0, b, 0) : Vec3(b, 0, 0);
   add_line(network, {Vec3(0, -end, 1), Vec3(0, end, 1)}, burgers, {}, false, NodeConstraint::pinned);
