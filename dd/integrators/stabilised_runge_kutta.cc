@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 
@@ -69,7 +70,8 @@ void check_finite(const Network &network, const Field &velocity)
     }
 }
 
-/// One RKC step of s stages from @p y0 with velocity @p f0; returns the new positions, sets @p f_end there.
+/// One RKC step of s stages from @p y0 with velocity @p f0; returns the displacement, sets @p f_end at its end. The recursion is that
+/// of the displacements from y0: exactly zero for nodes that do not move, such as one that is held on the surface of the grain.
 Field rkc_step(Network &network, const VelocityFunction &velocity, const Field &y0, const Field &f0, const double h,
                const unsigned s, Field &f_end)
 {
@@ -83,26 +85,31 @@ Field rkc_step(Network &network, const VelocityFunction &velocity, const Field &
   };
   const auto b_of = [&](const unsigned j) { return j == 1 ? 1 / w0 : b(j); };
   const std::size_t n = y0.size();
-  Field y_old = y0, y(n, Vec3::Zero()), y_new(n, Vec3::Zero());
+  Field d_old(n, Vec3::Zero()), d(n), d_new(n), y(n);
+  const auto place_nodes = [&]
+  {
+    std::transform(y0.begin(), y0.end(), d.begin(), y.begin(), std::plus<Vec3>());
+    set_positions(network, y);
+  };
   for (std::size_t i = 0; i < n; ++i)
-    y[i] = y0[i] + b_of(1) * w1 * h * f0[i];
+    d[i] = b_of(1) * w1 * h * f0[i];
   for (unsigned j = 2; j <= s; ++j)
   {
     const double mu = 2 * b_of(j) * w0 / b_of(j - 1), nu = -b_of(j) / b_of(j - 2 == 0 ? 2 : j - 2);
     const double mu_h = 2 * b_of(j) * w1 / b_of(j - 1) * h;
     const double gamma_h = -(1 - b_of(j - 1) * t.value[j - 1]) * mu_h;
-    set_positions(network, y);
+    place_nodes();
     const Field f = velocity(network);
     check_finite(network, f);
     for (std::size_t i = 0; i < n; ++i)
-      y_new[i] = (1 - mu - nu) * y0[i] + mu * y[i] + nu * y_old[i] + mu_h * f[i] + gamma_h * f0[i];
-    std::swap(y_old, y);
-    std::swap(y, y_new);
+      d_new[i] = mu * d[i] + nu * d_old[i] + mu_h * f[i] + gamma_h * f0[i];
+    std::swap(d_old, d);
+    std::swap(d, d_new);
   }
-  set_positions(network, y);
+  place_nodes();
   f_end = velocity(network);
   check_finite(network, f_end);
-  return y;
+  return d;
 }
 } // namespace
 
@@ -126,15 +133,11 @@ IntegratorStep StabilisedRungeKutta::advance(Network &network, const VelocityFun
   {
     step.stages = stages_for(h * stiffness);
     Field f_end;
-    const Field end = rkc_step(network, velocity, start, f0, h, step.stages, f_end);
+    step.displacement = rkc_step(network, velocity, start, f0, h, step.stages, f_end);
     step.evaluations += step.stages;
-    step.displacement.assign(start.size(), Vec3::Zero());
     Field error(start.size(), Vec3::Zero());
     for (const NodeIndex i : network.nodes())
-    {
-      step.displacement[i.value] = end[i.value] - start[i.value];
-      error[i.value] = 0.8 * (start[i.value] - end[i.value]) + 0.4 * h * (f0[i.value] + f_end[i.value]);
-    }
+      error[i.value] = -0.8 * step.displacement[i.value] + 0.4 * h * (f0[i.value] + f_end[i.value]);
     step.error = max_norm(network, error);
     const double moved = max_norm(network, step.displacement);
     const double by_error = 0.8 * std::cbrt(settings.error_tolerance / std::max(step.error, 1e-300));

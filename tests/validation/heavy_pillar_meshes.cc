@@ -1,5 +1,5 @@
 // The pillars of pillar_meshes.cc loaded until several loops have left, on more meshes: stress-strain curves against those of the finest
-// mesh. Prints the curves for docs/figures/pillar_meshes.py.
+// mesh. Prints the curves for docs/figures/pillar_meshes.py. With the argument square or round that shape only.
 #include "pillar_meshes.h"
 
 using namespace ddfem;
@@ -50,18 +50,21 @@ void compare(Report &report, const Section section, const std::vector<MeshOfPill
 
 int main(int argc, char **argv)
 {
+  const std::string only = argc > 1 ? argv[1] : "";
   return run(argc, argv,
-             [](Report &report)
+             [&](Report &report)
              {
-               compare(report, Section::square,
-                       {{"4 x 4 x 8", {4, 8}, 2, false},
-                        {"4 x 4 x 8, distorted", {4, 8}, 2, true},
-                        {"8 x 8 x 16, linear", {8, 16}, 1, false},
-                        {"8 x 8 x 16", {8, 16}, 2, false}});
-               compare(report, Section::circle,
-                       {{"6 across, 8 along", {6, 8}, 2, false},
-                        {"6 across, 8 along, distorted", {6, 8}, 2, true},
-                        {"10 across, 16 along, linear", {10, 16}, 1, false},
-                        {"10 across, 16 along", {10, 16}, 2, false}});
+               if (only != "round")
+                 compare(report, Section::square,
+                         {{"4 x 4 x 8", {4, 8}, 2, false},
+                          {"4 x 4 x 8, distorted", {4, 8}, 2, true},
+                          {"8 x 8 x 16, linear", {8, 16}, 1, false},
+                          {"8 x 8 x 16", {8, 16}, 2, false}});
+               // Linear elements do not reach the round surface to which lines slide: no run on them.
+               if (only != "square")
+                 compare(report, Section::circle,
+                         {{"6 across, 8 along", {6, 8}, 2, false},
+                          {"6 across, 8 along, distorted", {6, 8}, 2, true},
+                          {"8 across, 12 along", {8, 12}, 2, false}});
              });
 }
