@@ -5,11 +5,8 @@
 #include "dd/common/units.h"
 #include "dd/crystal/material.h"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <numbers>
-#include <sstream>
 
 namespace ddfem::coupling
 {
