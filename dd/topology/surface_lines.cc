@@ -188,7 +188,8 @@ std::optional<Vec3> way_back(const TopologyContext &context, const NodeIndex i)
   return nearest && (*nearest - x).norm() < 0.5 * shortest_arm ? nearest : std::nullopt;
 }
 
-/// Nodes of a re-entrant grain that were made on lines which pass through an edge.
+/// Nodes of a re-entrant grain that were made on lines which pass through an edge. One without a way back is taken out of its line:
+/// its neighbours lie on both sides of a re-entrant edge that is sharper than the line is fine.
 void bring_nodes_back(TopologyContext &context)
 {
   Network &network = context.network;
@@ -196,13 +197,19 @@ void bring_nodes_back(TopologyContext &context)
   const double tolerance = 1e-9 * shape.diameter();
   const std::vector<NodeIndex> nodes(network.nodes().begin(), network.nodes().end());
   for (const NodeIndex i : nodes)
-    if (network.constraint(i) == NodeConstraint::free && shape.signed_distance(network.position(i)) > tolerance)
-      if (const auto y = way_back(context, i))
-      {
-        move_node(context, i, *y);
-        if (!is_impenetrable(shape, *y))
-          exit_through_surface(context, i);
-      }
+  {
+    if (!network.contains(i) || network.constraint(i) != NodeConstraint::free ||
+        shape.signed_distance(network.position(i)) <= tolerance)
+      continue;
+    if (const auto y = way_back(context, i))
+    {
+      move_node(context, i, *y);
+      if (!is_impenetrable(shape, *y))
+        exit_through_surface(context, i);
+    }
+    else if (is_discretisation_node(network, i))
+      remove_node(context, i);
+  }
 }
 
 /// Nodes that several lines hold in their planes, and that have come to where one of these ends at the surface, leave there.

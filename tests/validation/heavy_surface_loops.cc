@@ -21,7 +21,8 @@ int main(int argc, char **argv)
   std::size_t failed = 0;
   for (long seed = first; seed < first + n_draws; ++seed)
   {
-    const auto placement = seed / ddfem::n_grain_kinds % 2 == 0 ? ddfem::Placement::anywhere : ddfem::Placement::at_edges;
+    const auto placement =
+        seed / ddfem::n_grain_kinds % 2 == 0 ? ddfem::Placement::anywhere : ddfem::Placement::at_edges;
     const ddfem::DrawResult r = ddfem::run_draw(static_cast<std::uint64_t>(seed), 200, placement);
     for (const std::string &name : {r.description, std::string("all")})
     {

@@ -24,8 +24,7 @@ InputDeck pillar()
 {
   InputDeck deck;
   deck.read(DDFEM_SOURCE_DIR "/examples/pillar_compression/input.prm");
-  for (const char *s : {"Domain/Subdivisions=4 4 8", "Domain/Image depth=0", "Time stepping/Final strain=1.27e-3",
-                        "Output/Frame interval=0"})
+  for (const char *s : {"Domain/Subdivisions=4 4 8", "Time stepping/Final strain=1.27e-3", "Output/Frame interval=0"})
     deck.set_from_command_line(s);
   return deck;
 }

@@ -289,7 +289,8 @@ struct SurfaceLoops : TopologyFixture
         u *= speed / u.norm();
       largest = std::max(largest, u.norm());
     }
-    if (motion == MotionKind::physics && largest > 0) // as the control of the step does
+    constexpr double rounding = 1e-9;                        // nm/ns: of a prismatic loop that nothing drives
+    if (motion == MotionKind::physics && largest > rounding) // as the control of the step does
       for (Vec3 &u : wanted)
         u *= speed / largest;
     return wanted;

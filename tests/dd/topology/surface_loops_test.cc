@@ -16,9 +16,8 @@ TEST_P(RandomLoopsIn, ArriveSlideAndLeaveWithoutLosingFluxOrArea)
   std::size_t left = 0, exits = 0;
   for (std::uint64_t k = 0; k < 43; ++k)
   {
-    const DrawResult r =
-        run_draw(100000 * n_grain_kinds + k * n_grain_kinds + static_cast<std::uint64_t>(GetParam()), 200,
-                 k % 2 == 0 ? Placement::anywhere : Placement::at_edges);
+    const DrawResult r = run_draw(100000 * n_grain_kinds + k * n_grain_kinds + static_cast<std::uint64_t>(GetParam()),
+                                  200, k % 2 == 0 ? Placement::anywhere : Placement::at_edges);
     EXPECT_EQ(r.failure, "");
     left += r.left ? 1 : 0;
     exits += r.counts.surface_exits;
@@ -31,6 +30,12 @@ TEST_P(RandomLoopsIn, ArriveSlideAndLeaveWithoutLosingFluxOrArea)
 TEST(LineAlongAnImpenetrableFillet, ComesBackBetweenItsNeighboursNotOntoOne)
 {
   EXPECT_EQ(run_draw(5169, 60).failure, "");
+}
+
+// A collision makes a node on a chord across the fillet, and the glide plane does not meet the surface between its neighbours.
+TEST(LineAlongAnImpenetrableFillet, LosesANodeThatHasNoWayBack)
+{
+  EXPECT_EQ(run_draw(1006564, 30).failure, "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Grains, RandomLoopsIn, testing::Range(0, n_grain_kinds),
