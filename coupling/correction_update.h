@@ -40,7 +40,7 @@ private:
 double force_norm(const Network &network, const SegmentPoints &points, const std::vector<SymTensor> &stress);
 
 /// Stands between the time loop and the solver, and lets a step do without a solve as long as the error that this makes in the
-/// segment forces is estimated to be small (docs/theory.md, section 7).
+/// segment forces is estimated to be small (docs/theory.md, section 6).
 ///
 /// The correction is linear in what the lines have swept. What was swept since the last solve is compared with what was swept
 /// between the last two by the field of its mirror images, mu |b (x) A| / (2 pi (1-nu) R^3) at the segments, R being the distance to

@@ -119,6 +119,16 @@ void EnergyBalance::add(const double work, const double stored, const LineWork &
   scale = std::max({scale, std::abs(sums.work), std::abs(sums.dissipated)});
 }
 
+Energies EnergyBalance::energies_with(const double platen_work, const LineWork &lines) const
+{
+  Energies result = sums;
+  result.work += platen_work;
+  result.dissipated += lines.total + lines.topology;
+  result.topology += lines.topology;
+  result.stored = result.work - result.dissipated - sums.mismatch();
+  return result;
+}
+
 void EnergyBalance::add(const BoundaryState &boundary, const LineWork &lines, MPI_Comm communicator)
 {
   const BoundaryState &old = last_boundary;

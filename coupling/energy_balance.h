@@ -76,6 +76,9 @@ public:
            const LineWork &lines);
 
   const Energies &energies() const { return sums; }
+  /// With steps that have not been added: work of the platens (MPa nm^3) and of the lines in them. The energy that is stored is
+  /// what closes the balance with the mismatch so far.
+  Energies energies_with(double platen_work, const LineWork &lines) const;
   /// mismatch() over the largest of work and dissipation so far; zero before anything has happened.
   double relative_mismatch() const { return scale > 0 ? sums.mismatch() / scale : 0.0; }
 

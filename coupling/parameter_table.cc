@@ -131,13 +131,14 @@ void add_domain(std::vector<ParameterEntry> &t)
        "(second) and along the axis (third) of a cylinder or pillar."});
   t.push_back({s, "Refinements", "0", count(0, 6), "", "Uniform refinements of the mesh."});
   t.push_back({s, "Element degree", "2", count(1, 2), "", "Polynomial degree of the elements: 1 or 2."});
-  t.push_back(
-      {s, "Elastic tolerance", "1e-7", between(1e-14, 1e-2), "", "Residual of the FEM solve relative to its load."});
+  t.push_back({s, "Elastic tolerance", "1e-5", between(1e-14, 1e-2), "",
+               "Residual of the FEM solve relative to its load; the force of the correction on the segments errs by "
+               "one to three times this."});
   t.push_back(
       {s, "Elastic solver", "automatic", one_of("automatic|multigrid|direct"), "",
        "Preconditioner of the conjugate gradients: algebraic multigrid, or a factorisation that is kept (MUMPS), which "
-       "takes more time once and more memory. Automatic: by the number of unknowns."});
-  t.push_back({s, "Correction tolerance", "1e-3", between(0, 0.1), "",
+       "takes more time once and more memory. Automatic: multigrid."});
+  t.push_back({s, "Correction tolerance", "0", between(0, 0.1), "",
                "Steps do without an elastic solve as long as the error that this makes in the segment forces is "
                "estimated below "
                "this fraction of the force of the correction; 0: every step solves."});

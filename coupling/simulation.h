@@ -83,6 +83,7 @@ private:
   void update_loading(const LineWork &lines);
   void apply_load(const LineWork &lines);
   void balance_energy();
+  Energies energies() const { return energy.energies_with(platen_work_since_balance, work_since_balance); }
   BodyResponse body_response() const;
   LineWork work_of_step(const IntegratorStep &step) const;
   double work_on_swept_area() const;
@@ -111,7 +112,9 @@ private:
   std::unique_ptr<CorrectionUpdate> update;
   GrainSolution solution;
   Observer observer;
-  LineWork work_since_balance; ///< of steps whose correction was extrapolated
+  LineWork work_since_balance;          ///< of steps whose correction was extrapolated
+  double platen_work_since_balance = 0; ///< in these, MPa nm^3
+  std::pair<double, double> last_load;  ///< load and motion of the platen when it moved last
   Loading loading;
   EnergyBalance energy;
   std::vector<Vec3> forces_at_start, forces_at_end; ///< of the lines in the last step, MPa nm^2, by NodeIndex::value

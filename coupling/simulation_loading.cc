@@ -49,6 +49,7 @@ void Simulation::start_loading()
   if (finite_grain)
   {
     finite_grain->move_platen(solution, 0.0);
+    last_load = {solution.load, solution.motion};
     energy.start(finite_grain->boundary_state());
   }
   else
@@ -78,18 +79,22 @@ void Simulation::apply_load(const LineWork &lines)
   }
   finite_grain->move_platen(solution, loading.state().strain / finite_grain->platen().strain_per_motion());
   work_since_balance += lines;
+  platen_work_since_balance += 0.5 * (last_load.first + solution.load) * (solution.motion - last_load.second);
+  last_load = {solution.load, solution.motion};
   if (solution.solved)
     balance_energy();
 }
 
 /// An extrapolated state holds displacements and loads of different times to first order: its energies would show what was swept
-/// since the last solve as a mismatch. The steps between two solves are therefore balanced as one.
+/// since the last solve as a mismatch. The steps between two solves are therefore balanced as one; until
+/// then the platens' work is that of their load.
 void Simulation::balance_energy()
 {
   if (!finite_grain)
     return;
   energy.add(finite_grain->boundary_state(), work_since_balance, communicator);
   work_since_balance = {};
+  platen_work_since_balance = 0;
 }
 
 LineWork Simulation::work_of_step(const IntegratorStep &step) const

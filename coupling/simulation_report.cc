@@ -60,10 +60,11 @@ HistoryRow Simulation::history_row(const IntegratorStep &step) const
   }
   else
     r.elastic_strain = r.stress / parameters.medium.youngs_modulus();
-  r.work = energy.energies().work;
-  r.stored_energy = energy.energies().stored;
-  r.dissipated_energy = energy.energies().dissipated;
-  r.dissipated_by_topology = energy.energies().topology;
+  const Energies now = energies();
+  r.work = now.work;
+  r.stored_energy = now.stored;
+  r.dissipated_energy = now.dissipated;
+  r.dissipated_by_topology = now.topology;
   r.energy_mismatch = energy.relative_mismatch();
   return r;
 }
@@ -77,7 +78,7 @@ std::string Simulation::status_line(const IntegratorStep &step) const
       << r.segments;
   if (parameters.loading.stages.size() > 1)
     out << "  stage " << r.stage << "/" << parameters.loading.stages.size();
-  if (energy.energies().dissipated > 0)
+  if (energies().dissipated > 0)
     out << "  energy mismatch " << std::setprecision(2) << 100 * r.energy_mismatch << " %";
   double done = time / parameters.stop.final_time;
   if (parameters.stop.final_strain > 0)
@@ -124,7 +125,7 @@ void Simulation::report(RunOutput &output, const IntegratorStep &step, const boo
 
 std::string Simulation::energy_line() const
 {
-  const Energies &e = energy.energies();
+  const Energies e = energies();
   std::ostringstream out;
   out << std::setprecision(5) << "work " << e.work / units::joule << " J = stored " << e.stored / units::joule
       << " J + dissipated " << e.dissipated / units::joule << " J + mismatch " << e.mismatch() / units::joule << " J";

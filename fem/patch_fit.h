@@ -14,7 +14,8 @@ namespace ddfem::fem
 /// Least-squares fits of a stress field over patches of cells (Zienkiewicz & Zhu, IJNME 33 (1992) 1331): around every
 /// vertex inside the grain a complete polynomial of the elements' degree is fitted to the values at the Gauss points of
 /// the cells that share the vertex. A node gets the mean of the fits of the vertices inside the grain that belong to
-/// the edge, face or cell it lies in. Nodes on the boundary get none: extrapolated that far, fits of the inside are
+/// the edge, face or cell it lies in. Nodes on the boundary get none with degree 2, and those of the vertices inside of their
+/// cells with degree 1: extrapolated that far, fits of the inside are
 /// worse than values of the cells there as soon as the stress varies over less than four cells.
 ///
 /// Normal equations are sums over cells, so that nothing but sums at vertices has to be exchanged between ranks.
@@ -30,7 +31,7 @@ public:
   /// covered()) get zero. Collective.
   std::vector<double> nodal_values(const std::vector<Six> &at_gauss_points) const;
 
-  /// Whether a local node gets a value: not on the boundary, nor where no vertex lies inside the grain.
+  /// Whether a local node gets a value: not on the boundary (degree 2), nor where no vertex lies inside the grain.
   bool covered(unsigned node) const { return coverage[node] > 0.; }
 
 private:

@@ -99,15 +99,9 @@ private:
 };
 } // namespace
 
-Solver solver_for(std::uint64_t /*n_dofs*/, unsigned /*degree*/)
-{
-  return Solver::multigrid;
-}
-
 std::unique_ptr<Preconditioner> make_preconditioner(Solver solver, const NodalGrid &grid, Matrix &matrix,
                                                     const dealii::Point<3> &centre, double length, bool singular)
 {
-  const Solver chosen = solver == Solver::automatic ? solver_for(grid.n_global_dofs, grid.degree) : solver;
   // With free modes the matrix is singular: a small shift keeps the factors and the coarsest matrix regular.
   std::vector<double> diagonal;
   constexpr double shift = 1e-7;
@@ -120,7 +114,7 @@ std::unique_ptr<Preconditioner> make_preconditioner(Solver solver, const NodalGr
   }
   matrix.compress(dealii::VectorOperation::insert);
   std::unique_ptr<Preconditioner> result;
-  if (chosen == Solver::direct)
+  if (solver == Solver::direct)
   {
     result = std::make_unique<Factorisation>(matrix);
   }

@@ -13,9 +13,6 @@ namespace ddfem::fem
 /// Unknowns: three components for each node, over NodalGrid::partitioner, with room for the ghosts.
 using NodalVector = dealii::LinearAlgebra::distributed::Vector<double>;
 
-/// Multigrid or direct: what automatic stands for. Chosen by measurement (docs/decisions.md, 34).
-Solver solver_for(std::uint64_t n_dofs, unsigned degree);
-
 /// Approximate inverse of the stiffness between free unknowns. Set up once. All members are collective.
 class Preconditioner
 {

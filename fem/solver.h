@@ -5,7 +5,7 @@ namespace ddfem::fem
 /// How the conjugate gradients of the elastic problem are preconditioned.
 enum class Solver
 {
-  automatic, ///< by the number of unknowns and the degree, see solver_for()
+  automatic, ///< the one that costs least over a run: multigrid at every size measured (docs/decisions.md, 34)
   multigrid, ///< smoothed aggregation (ML)
   direct     ///< kept factorisation (MUMPS): one iteration, two with free rigid-body modes
 };
