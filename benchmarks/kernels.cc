@@ -156,11 +156,10 @@ long flops_of_stress(const bool of_ray)
   const auto line = formulas::line_of<Counted>(table, 0);
   const formulas::StressConstants<Counted> constants(copper);
   const auto x = formulas::vector_of<Counted>({7, 1, 2});
-  formulas::Tensor<Counted> sum{};
+  formulas::StressSum<Counted> sum{};
   Counted::n = 0;
-  formulas::add_stress(of_ray ? formulas::ray_stress_terms(constants, line, x)
-                              : formulas::segment_stress_terms(constants, line, x),
-                       line.t, sum);
+  sum.add(of_ray ? formulas::ray_stress_terms(constants, line, x) : formulas::segment_stress_terms(constants, line, x),
+          line.t);
   return Counted::n;
 }
 

@@ -157,20 +157,18 @@ template <class T> HWY_INLINE Line<T> mirror_of(const SegmentImageData &d)
           vector_of<T>(d.burgers), vector_of<T>(d.edge), T(d.length)};
 }
 
-/// Adds the stress of a ray along -z that starts at @p origin.
+/// The stress of a ray along -z that starts at @p origin.
 template <class T>
-HWY_INLINE void add_outward_ray(const IsotropicMedium &medium, const Vec3 &origin, const Vec3 &b, const Vector<T> &x,
-                                Tensor<T> &sigma)
+HWY_INLINE Tensor<T> outward_ray(const IsotropicMedium &medium, const Vec3 &origin, const Vec3 &b, const Vector<T> &x)
 {
   const Vec3 t = -Vec3::UnitZ(), e = b.cross(t);
   const Line<T> ray{vector_of<T>(origin), {}, vector_of<T>(t), vector_of<T>(b), vector_of<T>(e), T(0.0)};
-  add_scaled_stress(medium, ray_stress_terms(StressConstants<T>(medium), ray, x), ray.t, sigma);
+  return stress_of(medium, ray_stress_terms(StressConstants<T>(medium), ray, x), ray.t);
 }
 
 template <class T> HWY_INLINE Tensor<T> stress_of(const LegImageData &d, const Vector<T> &x)
 {
-  Tensor<T> sigma{};
-  add_outward_ray(d.medium, d.origin, d.burgers, x, sigma);
+  Tensor<T> sigma = outward_ray(d.medium, d.origin, d.burgers, x);
   const Vector<T> r = x - vector_of<T>(d.origin), c = vector_of<T>(d.c);
   const Radii<T> k(r, T(d.a2));
   const T v5_3 = T(3.0) * k.v5, v7_15 = T(15.0) * k.v5 * k.v2;
@@ -209,8 +207,7 @@ template <class T> HWY_INLINE Vector<T> displacement_of(const LegImageData &d, c
 
 template <class T> HWY_INLINE Tensor<T> stress_of(const PiercingImageData &d, const Vector<T> &x)
 {
-  Tensor<T> sigma{};
-  add_outward_ray(d.medium, d.origin, d.burgers, x, sigma);
+  Tensor<T> sigma = outward_ray(d.medium, d.origin, d.burgers, x);
   const Vector<T> r = x - vector_of<T>(d.origin);
   const Radii<T> k(r, T(d.medium.a * d.medium.a));
   const T shear = T(d.medium.mu * d.screw / (2 * std::numbers::pi)) * k.v * k.s, plane = shear * k.s;

@@ -92,11 +92,11 @@ SegmentImage::SegmentImage(const IsotropicMedium &medium, const Vec3 &x1, const 
 SymTensor SegmentImage::stress(const Vec3 &x) const
 {
   const auto mirror = formulas::mirror_of<double>(data);
-  formulas::Tensor<double> sigma{};
-  formulas::add_scaled_stress(data.medium,
-                              formulas::segment_stress_terms(formulas::StressConstants<double>(data.medium), mirror,
-                                                             formulas::vector_of<double>(x)),
-                              mirror.t, sigma);
+  formulas::Tensor<double> sigma =
+      formulas::stress_of(data.medium,
+                          formulas::segment_stress_terms(formulas::StressConstants<double>(data.medium), mirror,
+                                                         formulas::vector_of<double>(x)),
+                          mirror.t);
   integrate<formulas::StressSums<double>>(data, x).add_stress_to(sigma, data.medium.mu / (2 * std::numbers::pi),
                                                                  data.medium.nu, x[2]);
   return to_tensor(sigma);

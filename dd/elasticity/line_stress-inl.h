@@ -22,10 +22,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace ddfem::HWY_NAMESPACE
 {
-/// J_mn = int s^m / R_a^n ds over the piece of line.
+/// J_mn = int s^m / R_a^n ds over the piece of line; those with n = 5 times three.
 template <class T> struct StressIntegrals
 {
-  T j03, j13, j05, j15, j25;
+  T j03, j13, three_j05, three_j15, three_j25;
 };
 
 /// R1, R2, and Q = q_over/q_under, G = g_over/g_under, whose divisions can wait.
@@ -35,10 +35,12 @@ template <class T> struct SegmentGeometry
   T r1, r2, q_over, q_under, g_over, g_under;
 
   HWY_INLINE SegmentGeometry(const T &s1_, const T &s2_, const T &length_, const T &da2)
-      : s1(s1_), s2(s2_), length(length_), r1(sqrt(s1_ * s1_ + da2)), r2(sqrt(s2_ * s2_ + da2))
+      : s1(s1_), s2(s2_), length(length_)
   {
-    const T product = s1 * s2;
-    const T sum = r1 * r2 + abs(product), squares = s1 * s1 + s2 * s2 + da2;
+    const T square1 = s1 * s1 + da2, square2 = s2 * s2 + da2, product = s1 * s2;
+    r1 = sqrt(square1);
+    r2 = sqrt(square2);
+    const T sum = r1 * r2 + abs(product), squares = s1 * s1 + square2;
     // A point on the segment with a = 0 gives Q = 0 and infinite integrals: the field is infinite there.
     const auto beside = product < T(0.0); // the foot of the perpendicular lies between the ends
     g_over = select(beside, sum, squares);
@@ -56,20 +58,15 @@ template <class T> struct SegmentGeometry
 
 template <class T> HWY_INLINE StressIntegrals<T> stress_integrals(const SegmentGeometry<T> &k)
 {
-  // One division for 1/(R1 R2), 1/(R1 + R2), 1/Q and 1/G.
-  const T product = k.r1 * k.r2, sum = k.r1 + k.r2;
-  const T left = product * sum, right = k.q_over * k.g_under;
-  const T inverse = T(1.0) / (left * right);
-  const T inverse_left = inverse * right, inverse_right = inverse * left;
-  const T inverse_product = inverse_left * sum;
-  const T j03 = k.length * sum * inverse_product * (k.q_under * k.g_under * inverse_right);
-  const T j13 = k.length * (k.s1 + k.s2) * inverse_left;
-  const T g = k.g_over * k.q_over * inverse_right;
-  const T i1 = k.r2 * inverse_product, i2 = k.r1 * inverse_product;
+  const T sum = k.r1 + k.r2, inverse_product = T(1.0) / (k.r1 * k.r2);
+  // One division for 1/Q and 1/(R1 + R2).
+  const T scaled = k.length * inverse_product / (k.q_over * sum);
+  const T j03 = scaled * (sum * sum) * k.q_under, j13 = scaled * ((k.s1 + k.s2) * k.q_over);
+  const T g = k.g_over / k.g_under;
+  const T i1 = k.r2 * inverse_product, i2 = k.r1 * inverse_product, squares = i1 * i1 + i2 * i2;
   const T t1 = k.s1 * i1, t2 = k.s2 * i2;
-  const T third(1.0 / 3.0);
-  return {j03, j13, j03 * (i1 * i1 + i2 * i2 + inverse_product * g) * third,
-          j13 * (i1 * i1 + inverse_product + i2 * i2) * third, j03 * (t1 * t1 + t1 * t2 + t2 * t2) * third};
+  return {j03, j13, j03 * (squares + inverse_product * g), j13 * (squares + inverse_product),
+          j03 * (t1 * (t1 + t2) + t2 * t2)};
 }
 
 /// 1/(R + s) without cancellation for s < 0.
@@ -84,8 +81,8 @@ template <class T> HWY_INLINE StressIntegrals<T> ray_stress_integrals(const T &s
 {
   const T r = sqrt(s * s + da2), i = T(1.0) / r, t = s * i;
   const T k = inverse_distance_plus_projection(s, r, da2);
-  const T j03 = i * k, third(1.0 / 3.0);
-  return {j03, i, j03 * i * (i + k) * third, i * i * i * third, j03 * (t * t + t + T(1.0)) * third};
+  const T j03 = i * k;
+  return {j03, i, j03 * i * (i + k), i * i * i, j03 * (t * t + t + T(1.0))};
 }
 
 /// A segment, or a ray (length and second end without meaning).
@@ -137,23 +134,22 @@ template <class T>
 HWY_INLINE StressTerms<T> stress_terms(const StressConstants<T> &c, const Line<T> &l, const StressIntegrals<T> &j,
                                        const Vector<T> &d)
 {
-  const T de = c.m * dot(d, l.e), core = T(1.5) * c.a2;
-  const T of_cross = -(j.j03 + core * j.j05), of_e = (c.m - T(1.0)) * j.j13 - core * j.j15;
-  const T of_d = T(-3.0) * de * j.j15, of_t = T(1.5) * de * j.j25;
-  const T e_in_w = -(c.m * j.j03), d_in_w = T(1.5) * de * j.j05;
-  return {d, of_cross * cross(d, l.b) + of_e * l.e + of_d * d + of_t * l.t, e_in_w * l.e + d_in_w * d,
-          de * (j.j03 + T(2.0) * core * j.j05)};
+  const T de = c.m * dot(d, l.e), half_a2 = T(0.5) * c.a2, half_de = T(0.5) * de, m_j03 = c.m * j.j03;
+  const T of_cross = j.j03 + half_a2 * j.three_j05, of_e = (c.m - T(1.0)) * j.j13 - half_a2 * j.three_j15;
+  const T of_d = de * j.three_j15, of_t = half_de * j.three_j25, d_in_w = half_de * j.three_j05;
+  return {d, of_e * l.e + of_t * l.t - of_cross * cross(d, l.b) - of_d * d, d_in_w * d - m_j03 * l.e,
+          de * (j.j03 + c.a2 * j.three_j05)};
 }
 
 /// Of a segment at @p x.
 template <class T>
 HWY_INLINE StressTerms<T> segment_stress_terms(const StressConstants<T> &c, const Line<T> &l, const Vector<T> &x)
 {
-  const Vector<T> p = x - l.x1, q = x - l.x2;
-  const T s1 = -dot(p, l.t), s2 = -dot(q, l.t);
+  const Vector<T> p = l.x1 - x, q = l.x2 - x;
+  const T s1 = dot(p, l.t), s2 = dot(q, l.t);
   // The perpendicular is taken from the nearer end: its rounding error is then relative to the smaller distance.
   const auto first_nearer = abs(s1) < abs(s2);
-  const Vector<T> d = select(first_nearer, p, q) + select(first_nearer, s1, s2) * l.t;
+  const Vector<T> d = select(first_nearer, s1, s2) * l.t - select(first_nearer, p, q);
   return stress_terms(c, l, stress_integrals(SegmentGeometry<T>(s1, s2, l.length, dot(d, d) + c.a2)), d);
 }
 
@@ -161,9 +157,9 @@ HWY_INLINE StressTerms<T> segment_stress_terms(const StressConstants<T> &c, cons
 template <class T>
 HWY_INLINE StressTerms<T> ray_stress_terms(const StressConstants<T> &c, const Line<T> &l, const Vector<T> &x)
 {
-  const Vector<T> p = x - l.x1;
-  const T s = -dot(p, l.t);
-  const Vector<T> d = p + s * l.t;
+  const Vector<T> p = l.x1 - x;
+  const T s = dot(p, l.t);
+  const Vector<T> d = s * l.t - p;
   return stress_terms(c, l, ray_stress_integrals(s, dot(d, d) + c.a2), d);
 }
 
@@ -173,32 +169,39 @@ template <class T> struct Tensor
   T xx, yy, zz, xy, xz, yz;
 };
 
-template <class T> HWY_INLINE void add_stress(const StressTerms<T> &s, const Vector<T> &t, Tensor<T> &sigma)
+/// Sum of stresses in units of mu/(4 pi).
+template <class T> struct StressSum
 {
-  const Vector<T> &d = s.d, &v = s.v, &w = s.w;
-  const T two(2.0);
-  sigma.xx += two * (t.x * v.x + d.x * w.x) + s.p;
-  sigma.yy += two * (t.y * v.y + d.y * w.y) + s.p;
-  sigma.zz += two * (t.z * v.z + d.z * w.z) + s.p;
-  sigma.xy += t.x * v.y + t.y * v.x + d.x * w.y + d.y * w.x;
-  sigma.xz += t.x * v.z + t.z * v.x + d.x * w.z + d.z * w.x;
-  sigma.yz += t.y * v.z + t.z * v.y + d.y * w.z + d.z * w.y;
-}
+  T half_xx, half_yy, half_zz, xy, xz, yz;
 
-/// The same in MPa.
+  HWY_INLINE void add(const StressTerms<T> &s, const Vector<T> &t)
+  {
+    const Vector<T> &d = s.d, &v = s.v, &w = s.w;
+    const T half_p = T(0.5) * s.p;
+    // One after the other, so that each is a product added to the sum.
+    half_xx = half_xx + half_p + t.x * v.x + d.x * w.x;
+    half_yy = half_yy + half_p + t.y * v.y + d.y * w.y;
+    half_zz = half_zz + half_p + t.z * v.z + d.z * w.z;
+    xy = xy + t.x * v.y + t.y * v.x + d.x * w.y + d.y * w.x;
+    xz = xz + t.x * v.z + t.z * v.x + d.x * w.z + d.z * w.x;
+    yz = yz + t.y * v.z + t.z * v.y + d.y * w.z + d.z * w.y;
+  }
+
+  /// MPa.
+  HWY_INLINE Tensor<T> tensor(const IsotropicMedium &medium) const
+  {
+    const T unit(medium.mu / (4.0 * std::numbers::pi)), twice = unit + unit;
+    return {twice * half_xx, twice * half_yy, twice * half_zz, unit * xy, unit * xz, unit * yz};
+  }
+};
+
+/// One stress, MPa.
 template <class T>
-HWY_INLINE void add_scaled_stress(const IsotropicMedium &medium, const StressTerms<T> &s, const Vector<T> &t,
-                                  Tensor<T> &sigma)
+HWY_INLINE Tensor<T> stress_of(const IsotropicMedium &medium, const StressTerms<T> &s, const Vector<T> &t)
 {
-  const T unit(medium.mu / (4.0 * std::numbers::pi));
-  Tensor<T> stress{};
-  add_stress(s, t, stress);
-  sigma.xx += unit * stress.xx;
-  sigma.yy += unit * stress.yy;
-  sigma.zz += unit * stress.zz;
-  sigma.xy += unit * stress.xy;
-  sigma.xz += unit * stress.xz;
-  sigma.yz += unit * stress.yz;
+  StressSum<T> sum{};
+  sum.add(s, t);
+  return sum.tensor(medium);
 }
 
 /// sigma . n.

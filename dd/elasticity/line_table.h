@@ -41,7 +41,7 @@ public:
   std::size_t n_blocks() const { return blocks.size(); }
   /// The lines behind the last one are zero.
   const Block &block(std::size_t k) const { return blocks[k]; }
-  /// The value of a row for line @p i; that of row r is (r - row) * block_size further on.
+  /// The first row of line @p i; row r is r * block_size numbers further on.
   const double *line(std::size_t i) const { return &blocks[i / block_size].value[0][i % block_size]; }
 
 private:

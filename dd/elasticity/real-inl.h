@@ -21,99 +21,145 @@
 HWY_BEFORE_NAMESPACE();
 namespace ddfem::HWY_NAMESPACE
 {
+namespace hn = hwy::HWY_NAMESPACE;
+
 /// At most as many lanes as a block of a LineTable has lines.
-using Lanes = hwy::HWY_NAMESPACE::CappedTag<double, LineTable::block_size>;
-using Register = hwy::HWY_NAMESPACE::Vec<Lanes>;
-constexpr std::size_t n_lanes = hwy::HWY_NAMESPACE::MaxLanes(Lanes());
+using Lanes = hn::CappedTag<double, LineTable::block_size>;
+using Register = hn::Vec<Lanes>;
+constexpr std::size_t n_register_lanes = hn::MaxLanes(Lanes());
+/// Narrow registers go in pairs: a formula is one long chain of operations that wait for each other, and two chains fill the
+/// gaps of one.
+constexpr std::size_t n_registers = n_register_lanes < LineTable::block_size ? 2 : 1;
+constexpr std::size_t n_lanes = n_registers * n_register_lanes;
 
 struct Mask
 {
-  hwy::HWY_NAMESPACE::Mask<Lanes> m;
+  hn::Mask<Lanes> m[n_registers];
 };
 
 /// A vector of doubles with the arithmetic of one.
 struct Real
 {
-  Register v;
+  Register v[n_registers];
 
-  HWY_INLINE Real() : v(hwy::HWY_NAMESPACE::Zero(Lanes())) {}
-  HWY_INLINE Real(const Register x) : v(x) {}
-  HWY_INLINE Real(const double x) : v(hwy::HWY_NAMESPACE::Set(Lanes(), x)) {}
+  HWY_INLINE Real() : Real(0.0) {}
+  HWY_INLINE Real(const double x)
+  {
+    for (Register &r : v)
+      r = hn::Set(Lanes(), x);
+  }
 
-  static HWY_INLINE Real load(const double *const p) { return hwy::HWY_NAMESPACE::LoadU(Lanes(), p); }
-  HWY_INLINE void store(double *const p) const { hwy::HWY_NAMESPACE::StoreU(v, Lanes(), p); }
+  static HWY_INLINE Real load(const double *const p)
+  {
+    Real x;
+    for (std::size_t i = 0; i < n_registers; ++i)
+      x.v[i] = hn::LoadU(Lanes(), p + i * n_register_lanes);
+    return x;
+  }
+  HWY_INLINE void store(double *const p) const
+  {
+    for (std::size_t i = 0; i < n_registers; ++i)
+      hn::StoreU(v[i], Lanes(), p + i * n_register_lanes);
+  }
 
   HWY_INLINE Real &operator+=(const Real &y)
   {
-    v = hwy::HWY_NAMESPACE::Add(v, y.v);
-    return *this;
-  }
-  HWY_INLINE Real &operator*=(const Real &y)
-  {
-    v = hwy::HWY_NAMESPACE::Mul(v, y.v);
+    for (std::size_t i = 0; i < n_registers; ++i)
+      v[i] = hn::Add(v[i], y.v[i]);
     return *this;
   }
 };
 
 HWY_INLINE Real operator+(const Real &x, const Real &y)
 {
-  return hwy::HWY_NAMESPACE::Add(x.v, y.v);
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Add(x.v[i], y.v[i]);
+  return z;
 }
 HWY_INLINE Real operator-(const Real &x, const Real &y)
 {
-  return hwy::HWY_NAMESPACE::Sub(x.v, y.v);
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Sub(x.v[i], y.v[i]);
+  return z;
 }
 HWY_INLINE Real operator*(const Real &x, const Real &y)
 {
-  return hwy::HWY_NAMESPACE::Mul(x.v, y.v);
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Mul(x.v[i], y.v[i]);
+  return z;
 }
 HWY_INLINE Real operator/(const Real &x, const Real &y)
 {
-  return hwy::HWY_NAMESPACE::Div(x.v, y.v);
-}
-HWY_INLINE Real operator-(const Real &x)
-{
-  return hwy::HWY_NAMESPACE::Neg(x.v);
-}
-HWY_INLINE Mask operator<(const Real &x, const Real &y)
-{
-  return {hwy::HWY_NAMESPACE::Lt(x.v, y.v)};
-}
-HWY_INLINE Mask operator&(const Mask &x, const Mask &y)
-{
-  return {hwy::HWY_NAMESPACE::And(x.m, y.m)};
-}
-HWY_INLINE Real sqrt(const Real &x)
-{
-  return hwy::HWY_NAMESPACE::Sqrt(x.v);
-}
-HWY_INLINE Real abs(const Real &x)
-{
-  return hwy::HWY_NAMESPACE::Abs(x.v);
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Div(x.v[i], y.v[i]);
+  return z;
 }
 HWY_INLINE Real min(const Real &x, const Real &y)
 {
-  return hwy::HWY_NAMESPACE::Min(x.v, y.v);
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Min(x.v[i], y.v[i]);
+  return z;
 }
 HWY_INLINE Real max(const Real &x, const Real &y)
 {
-  return hwy::HWY_NAMESPACE::Max(x.v, y.v);
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Max(x.v[i], y.v[i]);
+  return z;
+}
+HWY_INLINE Real operator-(const Real &x)
+{
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Neg(x.v[i]);
+  return z;
+}
+HWY_INLINE Real sqrt(const Real &x)
+{
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Sqrt(x.v[i]);
+  return z;
+}
+HWY_INLINE Real abs(const Real &x)
+{
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Abs(x.v[i]);
+  return z;
+}
+HWY_INLINE Mask operator<(const Real &x, const Real &y)
+{
+  Mask z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.m[i] = hn::Lt(x.v[i], y.v[i]);
+  return z;
 }
 HWY_INLINE Real select(const Mask &condition, const Real &yes, const Real &no)
 {
-  return hwy::HWY_NAMESPACE::IfThenElse(condition.m, yes.v, no.v);
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::IfThenElse(condition.m[i], yes.v[i], no.v[i]);
+  return z;
 }
 HWY_INLINE bool any(const Mask &x)
 {
-  return !hwy::HWY_NAMESPACE::AllFalse(Lanes(), x.m);
-}
-HWY_INLINE bool all(const Mask &x)
-{
-  return hwy::HWY_NAMESPACE::AllTrue(Lanes(), x.m);
+  bool found = false;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    found = found || !hn::AllFalse(Lanes(), x.m[i]);
+  return found;
 }
 HWY_INLINE double sum_of_lanes(const Real &x)
 {
-  return hwy::HWY_NAMESPACE::GetLane(hwy::HWY_NAMESPACE::SumOfLanes(Lanes(), x.v));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    sum += hn::GetLane(hn::SumOfLanes(Lanes(), x.v[i]));
+  return sum;
 }
 
 using std::abs;
@@ -125,10 +171,6 @@ HWY_INLINE double select(const bool condition, const double yes, const double no
   return condition ? yes : no;
 }
 HWY_INLINE bool any(const bool x)
-{
-  return x;
-}
-HWY_INLINE bool all(const bool x)
 {
   return x;
 }

@@ -2,8 +2,6 @@
 
 #include "dd/elasticity/line_stress-inl.h"
 
-#include <numbers>
-
 namespace ddfem
 {
 namespace
@@ -18,11 +16,10 @@ Vec3 unit_or_zero(const Vec3 &v)
 
 SymTensor to_tensor(const IsotropicMedium &medium, const formulas::StressTerms<double> &terms, const Vec3 &t)
 {
-  formulas::Tensor<double> s{};
-  formulas::add_stress(terms, formulas::vector_of<double>(t), s);
+  const formulas::Tensor<double> s = formulas::stress_of(medium, terms, formulas::vector_of<double>(t));
   SymTensor sigma;
   sigma << s.xx, s.yy, s.zz, s.xy, s.xz, s.yz;
-  return medium.mu / (4.0 * std::numbers::pi) * sigma;
+  return sigma;
 }
 
 formulas::Line<double> line_of(const Vec3 &x1, const Vec3 &x2, const Vec3 &t, const Vec3 &b, const double length)

@@ -22,18 +22,30 @@ using std::log1p;
 
 HWY_INLINE Real log(const Real &x)
 {
-  return hwy::HWY_NAMESPACE::Log(Lanes(), x.v);
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Log(Lanes(), x.v[i]);
+  return z;
 }
 HWY_INLINE Real log1p(const Real &x)
 {
-  return hwy::HWY_NAMESPACE::Log1p(Lanes(), x.v);
+  Real z;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    z.v[i] = hn::Log1p(Lanes(), x.v[i]);
+  return z;
 }
 HWY_INLINE Real atan2(const Real &y, const Real &x)
 {
   const Real ay = abs(y), ax = abs(x), larger = max(ay, ax), zero(0.0);
-  const Real small = hwy::HWY_NAMESPACE::Atan(Lanes(), (min(ay, ax) / select(zero < larger, larger, Real(1.0))).v);
+  const Real tangent = min(ay, ax) / select(zero < larger, larger, Real(1.0));
+  Real small;
+  for (std::size_t i = 0; i < n_registers; ++i)
+    small.v[i] = hn::Atan(Lanes(), tangent.v[i]);
   const Real first = select(ax < ay, Real(std::numbers::pi / 2) - small, small);
-  return hwy::HWY_NAMESPACE::CopySign(select(x < zero, Real(std::numbers::pi) - first, first).v, y.v);
+  Real angle = select(x < zero, Real(std::numbers::pi) - first, first);
+  for (std::size_t i = 0; i < n_registers; ++i)
+    angle.v[i] = hn::CopySign(angle.v[i], y.v[i]);
+  return angle;
 }
 
 /// Squared distance (relative to the squared distance of the nearest vertex, or nm^2 at a vertex) at which the

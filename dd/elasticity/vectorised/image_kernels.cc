@@ -46,10 +46,8 @@ struct StressOfImage
   }
   static HWY_INLINE std::array<Real, 6> of_mirror(const SegmentImageData &d, const Vector<Real> &x)
   {
-    Tensor<Real> sigma{};
     const Line<Real> mirror = mirror_of<Real>(d);
-    add_scaled_stress(d.medium, segment_stress_terms(StressConstants<Real>(d.medium), mirror, x), mirror.t, sigma);
-    return values_of(sigma);
+    return values_of(stress_of(d.medium, segment_stress_terms(StressConstants<Real>(d.medium), mirror, x), mirror.t));
   }
 };
 

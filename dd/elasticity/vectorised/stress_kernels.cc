@@ -9,8 +9,6 @@
 #include "dd/elasticity/line_stress-inl.h"
 #include "dd/elasticity/vectorised/point_groups-inl.h"
 
-#include <numbers>
-
 HWY_BEFORE_NAMESPACE();
 namespace ddfem::HWY_NAMESPACE
 {
@@ -29,18 +27,17 @@ HWY_INLINE void add_lines(const IsotropicMedium &medium, const Sources &sources,
                           TermsOf &&terms_of)
 {
   const StressConstants<Real> constants(medium);
-  const Real unit(medium.mu / (4.0 * std::numbers::pi));
   add_at_points(batch.n, batch.x, batch.sigma,
                 [&](std::size_t, const Vector<Real> &x) HWY_ATTR
                 {
-                  Tensor<Real> sum{};
+                  StressSum<Real> sum{};
                   for (std::size_t k = 0; k < sources.n; ++k)
                   {
                     const Line<Real> line = line_of<Real>(sources.lines, sources.which ? sources.which[k] : k);
-                    add_stress(terms_of(constants, line, x), line.t, sum);
+                    sum.add(terms_of(constants, line, x), line.t);
                   }
-                  return std::array<Real, 6>{unit * sum.xx, unit * sum.yy, unit * sum.zz,
-                                             unit * sum.xy, unit * sum.xz, unit * sum.yz};
+                  const Tensor<Real> s = sum.tensor(medium);
+                  return std::array<Real, 6>{s.xx, s.yy, s.zz, s.xy, s.xz, s.yz};
                 });
 }
 } // namespace
