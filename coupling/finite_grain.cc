@@ -7,7 +7,7 @@
 #include "coupling/image_planes.h"
 #include "coupling/input_error.h"
 #include "dd/common/parallel.h"
-#include "dd/elasticity/triangle_displacement.h"
+#include "dd/elasticity/vectorised/displacement_kernels.h"
 #include "dd/topology/growth.h"
 #include "fem/face_section.h"
 
@@ -257,20 +257,15 @@ void FiniteGrain::relax(const LineSystem &lines)
 
 void FiniteGrain::add_swept(const SweptArea &area)
 {
-  const auto &points = problem->boundary_points();
-  const auto &triangles = area.triangles();
-  std::vector<dealii::Tensor<1, 3>> u(points.size());
-#pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    const Vec3 x = to_vec3(points[i]);
-    Vec3 sum = Vec3::Zero();
-    for (const SweptTriangle &t : triangles)
-      sum += triangle_displacement(medium.nu, x, t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);
-    u[i] = to_tensor(sum);
-  }
+  std::vector<TriangularLoop> loops;
+  loops.reserve(area.triangles().size());
+  for (const SweptTriangle &t : area.triangles())
+    loops.emplace_back(t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);
+  std::vector<dealii::Tensor<1, 3>> u;
+  for (const Vec3 &value : triangle_displacements(medium.nu, loops, boundary_nodes()))
+    u.push_back(to_tensor(value));
   const double reach = 1e3 * grain_shape->diameter();
-  project_where_held(SweptDisplacement(triangles, medium.nu, axis, reach, face_resolution), u);
+  project_where_held(SweptDisplacement(area.triangles(), medium.nu, axis, reach, face_resolution), u);
   for (std::size_t i = 0; i < u.size(); ++i)
     infinite_displacement[i] += u[i];
 }
