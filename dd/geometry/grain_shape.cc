@@ -199,7 +199,11 @@ int PolyhedronShape::face(const Vec3 &x) const
   return nearest(x).face_id;
 }
 
-std::optional<Vec3> project_to_surface(const GrainShape &shape, const Vec3 &x, const Vec3 &plane_normal)
+namespace
+{
+/// Newton iterations to the surface along what @p allowed, an orthogonal projection, leaves of the outward normal.
+template <class Projection>
+std::optional<Vec3> project_along(const GrainShape &shape, const Vec3 &x, const Projection &allowed)
 {
   Vec3 y = x;
   const double tolerance = 1e-12 * shape.diameter();
@@ -210,8 +214,7 @@ std::optional<Vec3> project_to_surface(const GrainShape &shape, const Vec3 &x, c
     const double phi = shape.signed_distance(y);
     if (std::abs(phi) <= tolerance)
       return y;
-    const Vec3 n = shape.outward_normal(y);
-    const Vec3 m = n - n.dot(plane_normal) * plane_normal; // |m| = sine of the angle between plane and face
+    const Vec3 m = allowed(shape.outward_normal(y)); // |m| = sine of the angle between plane (or line) and face
     const double slope = m.squaredNorm();
     if (slope < parallel_sine * parallel_sine)
       return std::nullopt;
@@ -220,6 +223,17 @@ std::optional<Vec3> project_to_surface(const GrainShape &shape, const Vec3 &x, c
   if (std::abs(shape.signed_distance(y)) < 1e-9 * shape.diameter())
     return y;
   return std::nullopt;
+}
+} // namespace
+
+std::optional<Vec3> project_to_surface(const GrainShape &shape, const Vec3 &x, const Vec3 &plane_normal)
+{
+  return project_along(shape, x, [&](const Vec3 &n) { return Vec3(n - n.dot(plane_normal) * plane_normal); });
+}
+
+std::optional<Vec3> project_to_surface_within(const GrainShape &shape, const Vec3 &x, const Mat3 &directions)
+{
+  return project_along(shape, x, [&](const Vec3 &n) { return Vec3(directions * n); });
 }
 
 Vec3 surface_crossing(const GrainShape &shape, const Vec3 &inside, const Vec3 &outside)

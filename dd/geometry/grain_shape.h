@@ -118,6 +118,9 @@ private:
 /// |signed_distance| < 1e-9 diameter. Empty if the plane does not meet the surface near @p x (it is parallel to the face).
 std::optional<Vec3> project_to_surface(const GrainShape &shape, const Vec3 &x, const Vec3 &plane_normal);
 
+/// The same for a point that may move in some directions only, a plane or a line: @p directions projects on them orthogonally.
+std::optional<Vec3> project_to_surface_within(const GrainShape &shape, const Vec3 &x, const Mat3 &directions);
+
 /// First point on the surface along the straight path from @p inside (signed distance <= 0) to @p outside. In a re-entrant
 /// grain, ways out that are shorter than an eighth of the path may be overlooked.
 Vec3 surface_crossing(const GrainShape &shape, const Vec3 &inside, const Vec3 &outside);

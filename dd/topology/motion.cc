@@ -3,6 +3,7 @@
 #include "dd/topology/line_operations.h"
 #include "dd/topology/surface_lines.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -22,10 +23,32 @@ Vec3 keep_on_plane(const Network &network, const NodeIndex i, const Vec3 &x)
   return x - (p.normal.dot(x) - p.offset) * p.normal;
 }
 
+/// Where surface node @p i that heads for @p x stops before the other end of its line, if that is pinned at the surface. Such a line
+/// cannot leave, or the Burgers vector that ends there would go nowhere: it becomes no shorter than L_min.
+Vec3 clear_of_own_pin(const TopologyContext &context, const NodeIndex i, const Vec3 &x)
+{
+  const Network &network = context.network;
+  if (network.degree(i) != 1)
+    return x;
+  const NodeIndex other = network.other_end(network.connected_segments(i)[0], i);
+  const Vec3 &pin = network.position(other), &old = network.position(i);
+  const double depth_at_surface = 0.25 * context.settings.collision_radius, shortest = context.settings.min_segment;
+  if (network.constraint(other) != NodeConstraint::pinned || context.shape->signed_distance(pin) < -depth_at_surface)
+    return x;
+  const double length = (old - pin).norm();
+  if ((x - pin).norm() >= std::min(length, shortest))
+    return x;
+  return length <= shortest ? old : Vec3(pin + shortest / length * (old - pin));
+}
+
 /// Where a surface node that heads for @p target slides to; empty if an impenetrable face is in its way.
 std::optional<Vec3> sliding_target(const TopologyContext &context, const NodeIndex i, const Vec3 &target)
 {
-  const auto x = project_to_surface(*context.shape, target, common_normal(context.network, i));
+  const Vec3 normal = common_normal(context.network, i);
+  auto x = project_to_surface(*context.shape, target, normal);
+  if (x)
+    if (const Vec3 y = clear_of_own_pin(context, i, *x); y != *x)
+      x = project_to_surface(*context.shape, y, normal);
   return x && !is_impenetrable(*context.shape, *x) ? x : std::nullopt;
 }
 

@@ -121,6 +121,20 @@ bool may_merge(const TopologyContext &c, const End &firm, const End &other)
   return a == Hold::free || (a == Hold::pinned && b == Hold::free);
 }
 
+/// Where two surface nodes become one, near the point @p x that is on the planes of both: between two times of the step they move
+/// along chords of the surface, thus it is on the surface only if it goes there, in the directions that both planes leave.
+std::optional<Vec3> point_on_surface(const TopologyContext &c, const End &a, const End &b, const Vec3 &x)
+{
+  std::vector<ArmConstraint> arms;
+  for (const NodeIndex i : {a.node, b.node})
+    for (const SegmentIndex s : c.network.connected_segments(i))
+      arms.push_back(arm_constraint(c.network, s));
+  auto y = project_to_surface_within(*c.shape, x, free_directions(arms));
+  if (y && (*y - x).norm() > 2 * c.settings.collision_radius)
+    y.reset(); // they meet the surface elsewhere
+  return y;
+}
+
 std::optional<MergePlan> plan_for(const TopologyContext &c, End a, End b, const double t)
 {
   if (hold_of(c, b) > hold_of(c, a))
@@ -133,6 +147,13 @@ std::optional<MergePlan> plan_for(const TopologyContext &c, End a, End b, const 
   if (!x || (held && (*x - a.position).norm() > 1e-6 * c.settings.collision_radius))
     return std::nullopt;
   a.target = held ? a.position : *x;
+  if (hold_of(c, b) == Hold::surface)
+  {
+    const auto y = point_on_surface(c, a, b, a.target);
+    if (!y)
+      return std::nullopt;
+    a.target = *y;
+  }
   b.target = b.position + (a.target - xb);
   if (c.shape && !held && c.shape->signed_distance(a.target) > 0)
     return std::nullopt; // the line leaves the grain before
@@ -172,11 +193,8 @@ NodeIndex perform_merge(TopologyContext &context, const MergePlan &plan)
   const NodeIndex gone = node_of(context, plan.ends[1]);
   const bool both_on_surface =
       n.constraint(kept) == NodeConstraint::surface && n.constraint(gone) == NodeConstraint::surface;
-  Vec3 target = plan.ends[0].target;
-  if (both_on_surface) // between two times of the step they have moved along a chord of the surface
-    target = project_to_surface(*context.shape, target, n.normal(n.connected_segments(kept)[0])).value_or(target);
-  move_node(context, kept, target);
-  move_node(context, gone, plan.ends[1].target + (target - plan.ends[0].target));
+  move_node(context, kept, plan.ends[0].target);
+  move_node(context, gone, plan.ends[1].target);
   for (const NodeIndex i : {kept, gone})
   {
     context.remaining[i.value].setZero();

@@ -38,6 +38,18 @@ TEST(LineAlongAnImpenetrableFillet, LosesANodeThatHasNoWayBack)
   EXPECT_EQ(run_draw(1006564, 30).failure, "");
 }
 
+// A line is drawn into its own end, which is pinned on an edge of the grain.
+TEST(LineThatIsPinnedAtTheSurface, KeepsALengthWhenItsOtherEndSlidesToThePin)
+{
+  EXPECT_EQ(run_draw(2002334, 40, Placement::at_edges).failure, "");
+}
+
+// Two ends meet on the side of a cylinder, where the planes of their lines intersect.
+TEST(LinesOnTwoPlanes, JoinAtTheSurfaceWithoutLeavingEitherPlane)
+{
+  EXPECT_EQ(run_draw(3000229, 20).failure, "");
+}
+
 INSTANTIATE_TEST_SUITE_P(Grains, RandomLoopsIn, testing::Range(0, n_grain_kinds),
                          [](const testing::TestParamInfo<int> &parameter)
                          {
