@@ -133,7 +133,7 @@ void add_domain(std::vector<ParameterEntry> &t)
   t.push_back({s, "Element degree", "2", count(1, 2), "", "Polynomial degree of the elements: 1 or 2."});
   t.push_back({s, "Elastic tolerance", "1e-5", between(1e-14, 1e-2), "",
                "Residual of the FEM solve relative to its load; the force of the correction on the segments errs by "
-               "one to three times this."});
+               "one to five times this."});
   t.push_back(
       {s, "Elastic solver", "automatic", one_of("automatic|multigrid|direct"), "",
        "Preconditioner of the conjugate gradients: algebraic multigrid, or a factorisation that is kept (MUMPS), which "
