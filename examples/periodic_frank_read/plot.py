@@ -3,7 +3,6 @@
 
 usage: plot.py DIR
 """
-import itertools
 import os
 import sys
 
@@ -11,22 +10,14 @@ import matplotlib
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-from matplotlib.collections import LineCollection  # noqa: E402
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+import drawing  # noqa: E402
 import output_reader as reader  # noqa: E402
 
 SIZE = np.array([1.0e-6, 1.1e-6, 1.2e-6])
-BLUE, RED, GREY = '#1f4e9c', '#b8401f', '#8a8a8a'
-
-
-def project(points, elev=20, azim=-68):
-    """Orthographic projection of points (..., 3) in m: (..., 2) in nm."""
-    e, a = np.radians([elev, azim])
-    towards = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
-    right = np.array([-np.sin(a), np.cos(a), 0])
-    points = 1e9 * np.asarray(points)
-    return np.stack([points @ right, points @ np.cross(towards, right)], -1)
+VIEW = dict(elev=20, azim=-68)
+BLUE, RED, GREY = drawing.BLUE, drawing.RED, drawing.GREY
 
 
 def folded(lines):
@@ -47,18 +38,8 @@ def folded(lines):
     return np.array(parts)
 
 
-def box_edges():
-    corners = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * SIZE
-    return [(p, q) for p, q in itertools.combinations(corners, 2) if (p != q).sum() == 1]
-
-
 def network(ax, path, title):
-    ax.add_collection(LineCollection(project(box_edges()), colors=GREY, linewidths=0.6))
-    ax.add_collection(LineCollection(project(folded(reader.segments(path)[0])), colors=RED, linewidths=1.2, capstyle='round'))
-    ax.set_aspect('equal')
-    ax.autoscale_view()
-    ax.set_axis_off()
-    ax.set_title(title, fontsize=8, pad=2)
+    drawing.dislocations(ax, folded(reader.segments(path)[0]), drawing.box_edges(-SIZE / 2, SIZE / 2), VIEW, title)
 
 
 def main():

@@ -5,6 +5,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+import drawing  # noqa: E402,F401
 import output_reader as reader  # noqa: E402,F401
 
 WIDTH, HEIGHT = 500e-9, 1000e-9

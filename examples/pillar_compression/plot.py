@@ -3,7 +3,6 @@
 
 usage: plot.py DIR
 """
-import itertools
 import os
 import sys
 
@@ -11,14 +10,13 @@ import matplotlib
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
 
-from pillar import HEIGHT, NORMAL, SLIP, SOURCE, WIDTH, burgers, modulus, reader, strain_per_slip  # noqa: E402
+from pillar import HEIGHT, NORMAL, SLIP, SOURCE, WIDTH, burgers, drawing, modulus, reader, strain_per_slip  # noqa: E402
 
+BLUE, RED, GREY = drawing.BLUE, drawing.RED, drawing.GREY
 VIEW_PLANE = dict(elev=20, azim=-68)          # towards the glide plane
 VIEW_STEP = dict(elev=14, azim=38)            # along the glide plane
 MAGNIFICATION = 60
-BLUE, RED, GREY = '#1f4e9c', '#b8401f', '#8a8a8a'
 
 
 def stress_strain(ax, history, e):
@@ -44,34 +42,9 @@ def plane_outline():
     return np.column_stack([corners, SOURCE[2] - corners @ NORMAL[:2] / NORMAL[2]])
 
 
-def box_edges():
-    corners = np.array(list(itertools.product((-1, 1), (-1, 1), (0, 1)))) * [WIDTH / 2, WIDTH / 2, HEIGHT]
-    return [(p, q) for p, q in itertools.combinations(corners, 2) if (p != q).sum() == 1]
-
-
-def project(points, elev, azim):
-    """Orthographic projection of points (..., 3) in m: (..., 2) in nm, and the nearness to the eye."""
-    e, a = np.radians([elev, azim])
-    towards = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
-    right = np.array([-np.sin(a), np.cos(a), 0])
-    points = 1e9 * np.asarray(points)
-    return np.stack([points @ right, points @ np.cross(towards, right)], -1), points @ towards
-
-
-def bare_axes(ax):
-    ax.set_aspect('equal')
-    ax.autoscale_view()
-    ax.set_axis_off()
-
-
 def network(ax, path, title):
-    lines, _ = reader.segments(path)
-    ax.add_collection(LineCollection(project(box_edges(), **VIEW_PLANE)[0], colors=GREY, linewidths=0.6))
-    ax.add_collection(PolyCollection([project(plane_outline(), **VIEW_PLANE)[0]], facecolor=(0.35, 0.55, 0.85, 0.16),
-                                     edgecolor=(0.35, 0.55, 0.85, 0.6), linewidth=0.5))
-    ax.add_collection(LineCollection(project(lines, **VIEW_PLANE)[0], colors=RED, linewidths=1.4, capstyle='round'))
-    bare_axes(ax)
-    ax.set_title(title, fontsize=8, pad=2)
+    edges = drawing.box_edges([-WIDTH / 2, -WIDTH / 2, 0], [WIDTH / 2, WIDTH / 2, HEIGHT])
+    drawing.dislocations(ax, reader.segments(path)[0], edges, VIEW_PLANE, title, [plane_outline()])
 
 
 def chosen_frames(directory, history, b):
@@ -94,40 +67,6 @@ def chosen_frames(directory, history, b):
     return [(path, f'{name}\n{abs(history["strain [-]"][row[step]]) * 100:.3f} %') for (_, step, path), name in picks]
 
 
-def surface_polygons(grain):
-    """Plane quadrilaterals (index arrays) of the surface cells."""
-    polygons = []
-    x = grain['points']
-    for c in grain['cells']:
-        if len(c) != 9:
-            polygons.append(c)
-        elif np.linalg.norm(x[c[4]] - x[c].mean(axis=0)) < 1e-3 * np.ptp(x[c], axis=0).max():      # lexicographic
-            polygons += [c[[i, i + 1, i + 4, i + 3]] for i in (0, 1, 3, 4)]
-        else:                                                        # corners, sides, centre
-            polygons += [c[list(i)] for i in ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3))]
-    return np.array(polygons)
-
-
-def cut(x, u, value):
-    """The parts (points, displacements, values) of a polygon on the two sides of the glide plane; nothing is interpolated across."""
-    depth = (x - SOURCE) @ NORMAL
-    if (depth >= 0).all() or (depth < 0).all():
-        return [(x, u, value)]
-    parts = []
-    for inside in (depth >= 0, depth < 0):
-        points, owners = [], []
-        for i in range(len(x)):
-            j = (i + 1) % len(x)
-            if inside[i]:
-                points.append(x[i])
-                owners.append(i)
-            if inside[i] != inside[j]:
-                points.append(x[i] + depth[i] / (depth[i] - depth[j]) * (x[j] - x[i]))
-                owners.append(i if inside[i] else j)
-        parts.append((np.array(points), u[owners], value[owners]))
-    return parts
-
-
 def surface(ax, path, b):
     """Deformed surface, coloured by the displacement along the Burgers vector in units of b."""
     grain = reader.grain(path)
@@ -135,21 +74,8 @@ def surface(ax, path, b):
     along = u @ SLIP / b
     along -= np.median(along[(x - SOURCE) @ NORMAL < -60e-9])
     sign = np.sign(along.sum())
-    pieces = [piece for c in surface_polygons(grain) for piece in cut(x[c], u[c], sign * along[c])]
-    level = matplotlib.colors.Normalize(0, np.ceil((sign * along).max()))
-    colours = matplotlib.cm.viridis(level([piece[2].mean() for piece in pieces]))
-    middle = np.array([piece[0].mean(axis=0) for piece in pieces])
-    outward = np.where(np.abs(middle[:, :2]) > 0.499 * WIDTH, middle[:, :2], 0) / WIDTH
-    light = 0.80 + 0.4 * outward[:, 0] + 0.1 * outward[:, 1] + np.where(middle[:, 2] > 0.999 * HEIGHT, 0.2, 0)
-    colours[:, :3] *= np.clip(light, 0.55, 1)[:, None]
-    deformed = [project(piece[0] + MAGNIFICATION * piece[1], **VIEW_STEP) for piece in pieces]
-    order = np.argsort([nearness.mean() for _, nearness in deformed])
-    ax.add_collection(PolyCollection([deformed[k][0] for k in order], facecolors=colours[order], edgecolors=colours[order],
-                                     linewidths=0.3))
-    bare_axes(ax)
-    mappable = matplotlib.cm.ScalarMappable(level, 'viridis')
-    bar = ax.figure.colorbar(mappable, ax=ax, shrink=0.6, pad=0.02, aspect=22)
-    bar.set_label('displacement along the Burgers vector / b')
+    drawing.deformed_surface(ax, grain, sign * along, MAGNIFICATION, VIEW_STEP, 'displacement along the Burgers vector / b',
+                             [(SOURCE, NORMAL)], (0, np.ceil((sign * along).max())))
     ax.set_title(f'displacements x {MAGNIFICATION}', fontsize=8, pad=2)
 
 

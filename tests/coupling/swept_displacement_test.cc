@@ -1,0 +1,144 @@
+// The displacement that swept area leaves at the nodes of the surface, from which slip steps are drawn.
+#include "coupling/finite_grain.h"
+#include "loop_that_has_left.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ddfem::coupling
+{
+namespace
+{
+const IsotropicMedium medium{26.5e3, 0.345, 0.286};
+const Vec3 box_size(150, 120, 300), normal = Vec3(0.4, 0.2, 1).normalized(),
+                                    burgers = 0.286 * Vec3(1, 0, -0.4).normalized();
+
+class SweptDisplacement : public testing::Test
+{
+protected:
+  SweptDisplacement()
+  {
+    GrainParameters p;
+    p.mesh.size = {box_size[0], box_size[1], box_size[2]};
+    p.mesh.subdivisions = {3, 3, 6};
+    p.platen_motion = PlatenMotion::none; // no face held: values at the nodes are those of the field
+    p.image_depth = 0;
+    p.reference = ReferenceState::perfect_crystal;
+    grain = std::make_unique<FiniteGrain>(p, medium, MPI_COMM_WORLD);
+    grain->set_reference(network, {medium, network, &grain->shape(), RayDirection::normal, nullptr, nullptr});
+  }
+  std::vector<Vec3> at_nodes() const
+  {
+    std::vector<Vec3> u;
+    for (const auto &v : grain->boundary_state().infinite)
+      u.emplace_back(v[0], v[1], v[2]);
+    return u;
+  }
+
+  Network network;
+  std::unique_ptr<FiniteGrain> grain;
+};
+
+/// Mean over the ranks of the vectors on either side of the plane through the middle, the rest of which is then what differs from it.
+struct TwoBlocks
+{
+  Vec3 step;     ///< mean on the side of the normal minus mean on the other
+  double spread; ///< largest distance from the mean of the own side
+};
+
+TwoBlocks two_blocks(const std::vector<Vec3> &nodes, const std::vector<Vec3> &u)
+{
+  const auto side = [](const Vec3 &x) { return normal.dot(x - 0.5 * box_size) > 0 ? 1 : 0; };
+  Vec3 mean[2];
+  for (const int s : {0, 1})
+  {
+    Eigen::Vector4d sum = Eigen::Vector4d::Zero(); // the last component counts
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      if (side(nodes[k]) == s)
+        sum += Eigen::Vector4d(u[k][0], u[k][1], u[k][2], 1);
+    MPI_Allreduce(MPI_IN_PLACE, sum.data(), 4, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    mean[s] = sum.head<3>() / sum[3];
+  }
+  double spread = 0;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    spread = std::max(spread, (u[k] - mean[side(nodes[k])]).norm());
+  return {mean[1] - mean[0], spread};
+}
+
+TEST_F(SweptDisplacement, OfALoopThatHasLeftIsAStepOfTheBurgersVectorAndNothingElse)
+{
+  // A sum over some thousand triangles, strips and sectors: their rounding is what is left.
+  grain->add_swept(test::loop_that_has_left(network, grain->shape(), normal, burgers));
+  ASSERT_EQ(network.n_segments(), 0U);
+  const TwoBlocks blocks = two_blocks(grain->boundary_nodes(), at_nodes());
+  EXPECT_NEAR((blocks.step + burgers).norm() / burgers.norm(), 0, 1e-9);
+  EXPECT_NEAR(blocks.spread / burgers.norm(), 0, 1e-9);
+}
+
+TEST_F(SweptDisplacement, TwoLoopsThatHaveLeftMakeAStepOfTwoBurgersVectors)
+{
+  for (int k = 0; k < 2; ++k)
+    grain->add_swept(test::loop_that_has_left(network, grain->shape(), normal, burgers));
+  const TwoBlocks blocks = two_blocks(grain->boundary_nodes(), at_nodes());
+  EXPECT_NEAR((blocks.step + 2 * burgers).norm() / burgers.norm(), 0, 1e-9);
+}
+
+/// Moves the nodes of the network once, each by @p displacement of its position, and remeshes.
+template <class Displacement>
+void move(Network &network, const GrainShape &shape, SweptArea &swept, const Displacement &u)
+{
+  TopologyCounts counts;
+  const TopologySettings settings{6, 15, 0.3, 0.7};
+  TopologyContext c{network,
+                    settings,
+                    &shape,
+                    RayDirection::normal,
+                    [](Network &, const Vec3 &, const Vec3 &, const Vec3 &, std::span<const Vec3>)
+                    { return PlaneIndex{}; },
+                    swept,
+                    counts,
+                    std::vector<Vec3>(network.node_capacity(), Vec3::Zero())};
+  for (const NodeIndex i : network.nodes())
+    c.remaining[i.value] = u(network.position(i));
+  move_nodes(c, 1.0);
+  remesh(c);
+}
+
+TEST_F(SweptDisplacement, OfALoopInsideIsThatOfItsPresentLineHoweverItHasMoved)
+{
+  const PlaneIndex plane = network.planes().find_or_insert({0, 0, 0}, normal, 0.5 * box_size);
+  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u), middle = 0.5 * box_size;
+  std::vector<Vec3> points;
+  for (int k = 0; k < 12; ++k)
+    points.push_back(middle + 20 * (std::cos(M_PI * k / 6) * u + std::sin(M_PI * k / 6) * v));
+  add_line(network, points, burgers, plane, true, NodeConstraint::free);
+  grain->add_swept(grown_area(network, &grain->shape(), RayDirection::normal));
+  for (int step = 0; step < 60; ++step)
+  {
+    SweptArea swept;
+    // Away and back, growing all the time; remeshing divides and joins.
+    const Vec3 drift = 0.8 * std::cos(0.15 * step) * u;
+    move(network, grain->shape(), swept,
+         [&](const Vec3 &x) { return Vec3(drift + 0.009 * (x - middle) + 0.1 * std::sin(x[0] / 9) * v); });
+    grain->add_swept(swept);
+  }
+  ASSERT_GT(network.n_segments(), 15U);
+  double reach = -grain->shape().diameter();
+  for (const NodeIndex i : network.nodes())
+    reach = std::max(reach, grain->shape().signed_distance(network.position(i)));
+  ASSERT_LT(reach, -3); // has not left
+  const auto nodes = grain->boundary_nodes(), swept = at_nodes();
+  const Vec3 apex = middle + 7 * u - 11 * v; // any point of the plane
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+  {
+    Vec3 loop = Vec3::Zero();
+    for (const SegmentIndex s : network.segments())
+      loop += triangle_displacement(medium.nu, nodes[k], apex, network.position(network.start(s)),
+                                    network.position(network.end(s)), network.burgers(s));
+    EXPECT_NEAR((swept[k] - loop).norm() / burgers.norm(), 0, 1e-10) << nodes[k].transpose();
+  }
+}
+} // namespace
+} // namespace ddfem::coupling
