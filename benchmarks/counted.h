@@ -11,7 +11,8 @@ struct Counted
   double v;
   static inline long n = 0;
 
-  explicit Counted(const double x = 0.0) : v(x) {}
+  Counted() : v(0.0) {}
+  explicit Counted(const double x) : v(x) {}
   Counted &operator+=(const Counted &y)
   {
     ++n;
