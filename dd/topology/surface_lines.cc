@@ -172,7 +172,7 @@ std::optional<Vec3> way_back(const TopologyContext &context, const NodeIndex i)
   const Vec3 x = network.position(i);
   const double distance = shape.signed_distance(x);
   constexpr double near = 4; // times the distance: the plane meets the surface at more than a quarter of a right angle
-  const auto nearest = project_to_surface(shape, x, common_normal(network, i));
+  auto nearest = project_to_surface(shape, x, common_normal(network, i));
   if (nearest && (*nearest - x).norm() < near * distance)
     return nearest;
   const double shortest_piece = 0.25 * context.settings.collision_radius;
