@@ -173,57 +173,36 @@ HWY_EXPORT(add_ray_by_points);
 
 namespace
 {
-/// What is called for segments, and for rays.
-struct SegmentKernels
+/// What is called for segments, or for rays.
+struct LineKernels
 {
-  static constexpr auto plan = internal::plan_for_segments;
-
-  static void add_lanes(const IsotropicMedium &medium, const LineTable &lines, const std::size_t first,
-                        const std::size_t n_blocks, const internal::ForceTarget &target, const double *const n,
-                        internal::LaneSums &sums)
-  {
-    HWY_DYNAMIC_DISPATCH(add_segments_by_lanes)(medium, lines, first, n_blocks, target, n, sums);
-  }
-  static void add_points(const IsotropicMedium &medium, const LineTable &lines, const std::size_t number,
-                         const internal::ForceTarget &target, const internal::LinePoints &points,
-                         internal::LaneSums &sums)
-  {
-    HWY_DYNAMIC_DISPATCH(add_segment_by_points)(medium, lines, number, target, points, sums);
-  }
-  static internal::LineSingularities singularities(const Vec3 &x1, const Vec3 &x2, const Vec3 & /*t*/, const double a,
-                                                   const internal::ForceTarget &target)
-  {
-    return internal::LineSingularities::of_segment(x1, x2, a, target.x3, target.t);
-  }
+  decltype(&internal::plan_for_segments) plan;
+  decltype(&HWY_DYNAMIC_DISPATCH(add_segments_by_lanes)) add_lanes;
+  decltype(&HWY_DYNAMIC_DISPATCH(add_segment_by_points)) add_points;
+  /// Of the line with the given ends and direction, core radius a.
+  internal::LineSingularities (*singularities)(const Vec3 &x1, const Vec3 &x2, const Vec3 &t, double a,
+                                               const internal::ForceTarget &target);
 };
 
-struct RayKernels
+LineKernels segment_kernels()
 {
-  static constexpr auto plan = internal::plan_for_rays;
+  return {internal::plan_for_segments, &HWY_DYNAMIC_DISPATCH(add_segments_by_lanes),
+          &HWY_DYNAMIC_DISPATCH(add_segment_by_points),
+          [](const Vec3 &x1, const Vec3 &x2, const Vec3 & /*t*/, const double a, const internal::ForceTarget &target)
+          { return internal::LineSingularities::of_segment(x1, x2, a, target.x3, target.t); }};
+}
 
-  static void add_lanes(const IsotropicMedium &medium, const LineTable &lines, const std::size_t first,
-                        const std::size_t n_blocks, const internal::ForceTarget &target, const double *const n,
-                        internal::LaneSums &sums)
-  {
-    HWY_DYNAMIC_DISPATCH(add_rays_by_lanes)(medium, lines, first, n_blocks, target, n, sums);
-  }
-  static void add_points(const IsotropicMedium &medium, const LineTable &lines, const std::size_t number,
-                         const internal::ForceTarget &target, const internal::LinePoints &points,
-                         internal::LaneSums &sums)
-  {
-    HWY_DYNAMIC_DISPATCH(add_ray_by_points)(medium, lines, number, target, points, sums);
-  }
-  static internal::LineSingularities singularities(const Vec3 &x1, const Vec3 & /*x2*/, const Vec3 &t, const double a,
-                                                   const internal::ForceTarget &target)
-  {
-    return internal::LineSingularities::of_ray(x1, t, a, target.x3, target.t);
-  }
-};
+LineKernels ray_kernels()
+{
+  return {internal::plan_for_rays, &HWY_DYNAMIC_DISPATCH(add_rays_by_lanes), &HWY_DYNAMIC_DISPATCH(add_ray_by_points),
+          [](const Vec3 &x1, const Vec3 & /*x2*/, const Vec3 &t, const double a, const internal::ForceTarget &target)
+          { return internal::LineSingularities::of_ray(x1, t, a, target.x3, target.t); }};
+}
 
 /// Adds what one near line does, in portions of points.
-template <class Kernels>
-void add_near_line(const IsotropicMedium &medium, const LineTable &lines, const std::size_t number,
-                   const internal::ForceTarget &target, const double tolerance, internal::LaneSums &sums)
+void add_near_line(const LineKernels &kernels, const IsotropicMedium &medium, const LineTable &lines,
+                   const std::size_t number, const internal::ForceTarget &target, const double tolerance,
+                   internal::LaneSums &sums)
 {
   const double *const p = lines.line(number);
   const auto vector = [&](const std::size_t row)
@@ -232,9 +211,9 @@ void add_near_line(const IsotropicMedium &medium, const LineTable &lines, const 
     return Vec3(p[row * stride], p[(row + 1) * stride], p[(row + 2) * stride]);
   };
   internal::LinePoints points;
-  const auto use = [&] { Kernels::add_points(medium, lines, number, target, points, sums); };
-  internal::integrate_graded(Kernels::singularities(vector(LineTable::first_end), vector(LineTable::second_end),
-                                                    vector(LineTable::direction), medium.a, target),
+  const auto use = [&] { kernels.add_points(medium, lines, number, target, points, sums); };
+  internal::integrate_graded(kernels.singularities(vector(LineTable::first_end), vector(LineTable::second_end),
+                                                   vector(LineTable::direction), medium.a, target),
                              target.length, tolerance,
                              [&](const double z, const double weight)
                              { points.add(z / target.length, weight / target.length, use); });
@@ -253,9 +232,9 @@ SegmentForces forces_from(const IsotropicMedium &medium, const internal::LaneSum
   return {(total - moment).cross(target.t), moment.cross(target.t)};
 }
 
-template <class Kernels>
-SegmentForces force_of_lines(const IsotropicMedium &medium, const LineTable &lines, const Vec3 &x3, const Vec3 &x4,
-                             const Vec3 &b34, const double tolerance, const std::size_t without)
+SegmentForces force_of_lines(const LineKernels &kernels, const IsotropicMedium &medium, const LineTable &lines,
+                             const Vec3 &x3, const Vec3 &x4, const Vec3 &b34, const double tolerance,
+                             const std::size_t without)
 {
   const double length = (x4 - x3).norm();
   if (length == 0.0)
@@ -267,15 +246,15 @@ SegmentForces force_of_lines(const IsotropicMedium &medium, const LineTable &lin
   {
     const std::size_t n_blocks = std::min(internal::chunk_of_blocks, lines.n_blocks() - block);
     const std::size_t first = block * LineTable::block_size, end = first + n_blocks * LineTable::block_size;
-    Kernels::plan(lines, block, n_blocks, target, medium.a, tolerance, n_points.data());
+    kernels.plan(lines, block, n_blocks, target, medium.a, tolerance, n_points.data());
     for (std::size_t i = lines.size(); i < end; ++i)
       n_points[i - first] = -1.0; // nothing there
     if (without >= first && without < end)
       n_points[without - first] = -1.0;
-    Kernels::add_lanes(medium, lines, block, n_blocks, target, n_points.data(), sums);
+    kernels.add_lanes(medium, lines, block, n_blocks, target, n_points.data(), sums);
     for (std::size_t i = first; i < end; ++i)
       if (n_points[i - first] == 0.0)
-        add_near_line<Kernels>(medium, lines, i, target, tolerance, sums);
+        add_near_line(kernels, medium, lines, i, target, tolerance, sums);
   }
   return forces_from(medium, sums, target);
 }
@@ -284,13 +263,13 @@ SegmentForces force_of_lines(const IsotropicMedium &medium, const LineTable &lin
 SegmentForces force_of_segments(const IsotropicMedium &medium, const LineTable &segments, const Vec3 &x3,
                                 const Vec3 &x4, const Vec3 &b34, const double tolerance, const std::size_t without)
 {
-  return force_of_lines<SegmentKernels>(medium, segments, x3, x4, b34, tolerance, without);
+  return force_of_lines(segment_kernels(), medium, segments, x3, x4, b34, tolerance, without);
 }
 
 SegmentForces force_of_rays(const IsotropicMedium &medium, const LineTable &rays, const Vec3 &x3, const Vec3 &x4,
                             const Vec3 &b34, const double tolerance)
 {
-  return force_of_lines<RayKernels>(medium, rays, x3, x4, b34, tolerance, no_line);
+  return force_of_lines(ray_kernels(), medium, rays, x3, x4, b34, tolerance, no_line);
 }
 } // namespace ddfem
 #endif
