@@ -85,43 +85,19 @@ TEST_F(SweptDisplacement, TwoLoopsThatHaveLeftMakeAStepOfTwoBurgersVectors)
   EXPECT_NEAR((blocks.step + 2 * burgers).norm() / burgers.norm(), 0, 1e-9);
 }
 
-/// Moves the nodes of the network once, each by @p displacement of its position, and remeshes.
-template <class Displacement>
-void move(Network &network, const GrainShape &shape, SweptArea &swept, const Displacement &u)
-{
-  TopologyCounts counts;
-  const TopologySettings settings{6, 15, 0.3, 0.7};
-  TopologyContext c{network,
-                    settings,
-                    &shape,
-                    RayDirection::normal,
-                    [](Network &, const Vec3 &, const Vec3 &, const Vec3 &, std::span<const Vec3>)
-                    { return PlaneIndex{}; },
-                    swept,
-                    counts,
-                    std::vector<Vec3>(network.node_capacity(), Vec3::Zero())};
-  for (const NodeIndex i : network.nodes())
-    c.remaining[i.value] = u(network.position(i));
-  move_nodes(c, 1.0);
-  remesh(c);
-}
-
 TEST_F(SweptDisplacement, OfALoopInsideIsThatOfItsPresentLineHoweverItHasMoved)
 {
-  const PlaneIndex plane = network.planes().find_or_insert({0, 0, 0}, normal, 0.5 * box_size);
   const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u), middle = 0.5 * box_size;
-  std::vector<Vec3> points;
-  for (int k = 0; k < 12; ++k)
-    points.push_back(middle + 20 * (std::cos(M_PI * k / 6) * u + std::sin(M_PI * k / 6) * v));
-  add_line(network, points, burgers, plane, true, NodeConstraint::free);
+  test::add_ring(network, normal, burgers, middle);
   grain->add_swept(grown_area(network, &grain->shape(), RayDirection::normal));
   for (int step = 0; step < 60; ++step)
   {
     SweptArea swept;
     // Away and back, growing all the time; remeshing divides and joins.
     const Vec3 drift = 0.8 * std::cos(0.15 * step) * u;
-    move(network, grain->shape(), swept,
-         [&](const Vec3 &x) { return Vec3(drift + 0.009 * (x - middle) + 0.1 * std::sin(x[0] / 9) * v); });
+    test::move_and_remesh(network, grain->shape(), swept,
+                          [&](const Vec3 &x)
+                          { return Vec3(drift + 0.009 * (x - middle) + 0.1 * std::sin(x[0] / 9) * v); });
     grain->add_swept(swept);
   }
   ASSERT_GT(network.n_segments(), 15U);
