@@ -102,6 +102,8 @@ double force_norm(const Network &network, const SegmentPoints &points, const std
 
 void CorrectionUpdate::set_scale(const Network &network, const SegmentField &correction)
 {
+  if (!enabled())
+    return;
   double burgers = 0;
   for (const SegmentIndex s : network.segments())
     burgers = std::max(burgers, network.burgers(s).norm());

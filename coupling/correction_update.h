@@ -60,7 +60,7 @@ public:
 
   /// Takes notice of a step's swept area. Collective.
   void add_swept(const SweptArea &area);
-  /// The force scale: force_norm() of the correction, but at least mu b / diameter, the stress that bends a line as much as the
+  /// The force scale, if steps may do without a solve: force_norm() of the correction, but at least mu b / diameter, the stress that bends a line as much as the
   /// grain.
   void set_scale(const Network &network, const SegmentField &correction);
   /// The correction with the platen at rest, solved or extrapolated. Collective.
