@@ -81,7 +81,7 @@ void DislocationTractions::add_stress(const std::span<const unsigned> sources,
   add_ray_stress(line_system.medium(), rays, of_rays, buffer.batch());
   std::vector<SymTensor> sums;
   for (std::size_t i = 0; i < points.size(); ++i)
-    sums.push_back(buffer.stress(i));
+    sums.push_back(buffer.value(i));
   if (!of_images.empty())
   {
     std::vector<Vec3> positions;

@@ -1,9 +1,11 @@
 #include "coupling/face_displacements.h"
 
 #include "coupling/convert.h"
+#include "dd/elasticity/vectorised/displacement_kernels.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace ddfem::coupling
@@ -11,12 +13,12 @@ namespace ddfem::coupling
 namespace
 {
 /// A triangle from @p first on in the sense of its circuit.
-std::array<LoopVertex, 3> rotated(const SweptTriangle &t, const std::size_t first)
+std::array<LoopVertex, 3> rotated(const TriangularLoop &t, const std::size_t first)
 {
   return {t.vertices[first], t.vertices[(first + 1) % 3], t.vertices[(first + 2) % 3]};
 }
 
-std::vector<TriangleCorners> extent_of(const SweptTriangle &t, const double reach)
+std::vector<TriangleCorners> extent_of(const TriangularLoop &t, const double reach)
 {
   // From the finite vertex that follows one at infinity; from any, if all are finite.
   std::size_t first = 0;
@@ -36,20 +38,20 @@ void FaceDisplacement::add_stress(const std::span<const unsigned> sources,
                                   const std::span<const dealii::Point<3>> points,
                                   const std::span<dealii::SymmetricTensor<2, 3>> values) const
 {
+  std::vector<Vec3> positions, u(points.size(), Vec3::Zero());
+  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_vec3);
+  add_displacement(sources, positions, u);
   for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    const Vec3 u = displacement(sources, to_vec3(points[i]));
     for (unsigned c = 0; c < 3; ++c)
-      values[i][axis][c] += u[c];
-  }
+      values[i][axis][c] += u[i][c];
 }
 
-SweptDisplacement::SweptDisplacement(const std::vector<SweptTriangle> &triangles, const double poisson,
+SweptDisplacement::SweptDisplacement(const std::vector<TriangularLoop> &triangles, const double poisson,
                                      const int normal_axis, const double reach, const double smallest)
     : FaceDisplacement(normal_axis), swept(triangles), nu(poisson), resolution(smallest)
 {
   extents.reserve(swept.size());
-  for (const SweptTriangle &t : swept)
+  for (const TriangularLoop &t : swept)
     extents.push_back(extent_of(t, reach));
 }
 
@@ -66,15 +68,19 @@ void SweptDisplacement::smooth_lengths(const dealii::Point<3> &centre, const dou
   }
 }
 
-Vec3 SweptDisplacement::displacement(const std::span<const unsigned> sources, const Vec3 &x) const
+void SweptDisplacement::add_displacement(const std::span<const unsigned> sources, const std::span<const Vec3> points,
+                                         const std::span<Vec3> u) const
 {
-  Vec3 u = Vec3::Zero();
+  std::vector<TriangularLoop> loops;
+  loops.reserve(sources.size());
   for (const unsigned s : sources)
-  {
-    const auto &v = swept[s].vertices;
-    u += triangle_displacement(nu, x, v[0], v[1], v[2], swept[s].burgers);
-  }
-  return u;
+    loops.push_back(swept[s]);
+  DisplacementBuffer buffer(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    buffer.set_point(i, points[i]);
+  add_triangle_displacement(nu, loops, buffer.batch());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    u[i] += buffer.value(i);
 }
 
 void ImageDisplacement::smooth_lengths(const dealii::Point<3> &centre, const double radius,

@@ -1,9 +1,9 @@
 // Analytic displacement fields on the held faces, for their projection on the elements (fem::TraceProjection).
 #pragma once
 
+#include "dd/elasticity/triangular_loop.h"
 #include "dd/forces/surface_images.h"
 #include "dd/geometry/facet_tree.h"
-#include "dd/topology/swept_area.h"
 #include "fem/traction_field.h"
 
 #include <vector>
@@ -21,8 +21,9 @@ public:
                   std::span<dealii::SymmetricTensor<2, 3>> values) const final;
 
 protected:
-  /// Displacement of all @p sources together at @p x, nm.
-  virtual Vec3 displacement(std::span<const unsigned> sources, const Vec3 &x) const = 0;
+  /// Adds the displacement of @p sources at @p points to @p u, nm.
+  virtual void add_displacement(std::span<const unsigned> sources, std::span<const Vec3> points,
+                                std::span<Vec3> u) const = 0;
 
 private:
   unsigned axis;
@@ -35,7 +36,7 @@ class SweptDisplacement final : public FaceDisplacement
 public:
   /// @p triangles must outlive the object. @p poisson: Poisson's ratio. @p reach: where triangles that go to infinity end as far as
   /// distances are concerned, much farther than the grain, nm. @p smallest: this length, nm.
-  SweptDisplacement(const std::vector<SweptTriangle> &triangles, double poisson, int normal_axis, double reach,
+  SweptDisplacement(const std::vector<TriangularLoop> &triangles, double poisson, int normal_axis, double reach,
                     double smallest);
 
   unsigned n_sources() const override { return static_cast<unsigned>(swept.size()); }
@@ -43,10 +44,11 @@ public:
                       std::span<double> lengths) const override;
 
 protected:
-  Vec3 displacement(std::span<const unsigned> sources, const Vec3 &x) const override;
+  void add_displacement(std::span<const unsigned> sources, std::span<const Vec3> points,
+                        std::span<Vec3> u) const override;
 
 private:
-  const std::vector<SweptTriangle> &swept;
+  const std::vector<TriangularLoop> &swept;
   double nu, resolution;
   std::vector<std::vector<TriangleCorners>>
       extents; ///< finite triangles that cover each of them: one, or two for a strip
@@ -66,9 +68,10 @@ public:
                       std::span<double> lengths) const override;
 
 protected:
-  Vec3 displacement(std::span<const unsigned> sources, const Vec3 &x) const override
+  void add_displacement(std::span<const unsigned> sources, std::span<const Vec3> points,
+                        std::span<Vec3> u) const override
   {
-    return images.displacement(sources, x);
+    images.add_displacement(sources, points, u);
   }
 
 private:

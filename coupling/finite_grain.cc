@@ -265,7 +265,7 @@ void FiniteGrain::add_swept(const SweptArea &area)
   for (const Vec3 &value : triangle_displacements(medium.nu, loops, boundary_nodes()))
     u.push_back(to_tensor(value));
   const double reach = 1e3 * grain_shape->diameter();
-  project_where_held(SweptDisplacement(area.triangles(), medium.nu, axis, reach, face_resolution), u);
+  project_where_held(SweptDisplacement(loops, medium.nu, axis, reach, face_resolution), u);
   for (std::size_t i = 0; i < u.size(); ++i)
     infinite_displacement[i] += u[i];
 }

@@ -113,11 +113,10 @@ formulas::Torsion<double> torsion(const PiercingImageData &d, const Vec3 &x)
   return sum;
 }
 
-/// Adds to the @p values of a batch of points: @p add_all() takes all points for far ones, so that what near ones had is kept
+/// Adds to the values of a batch of points: @p add_all() takes all points for far ones, so that what near ones had is kept
 /// aside, and @p at_point(x) serves those.
-template <std::size_t n_values, class Batch, class AddAll, class AtPoint>
-void add_piercing(const PiercingImageData &d, const Batch &batch, double *const (&values)[n_values], AddAll &&add_all,
-                  AtPoint &&at_point)
+template <std::size_t n_values, class AddAll, class AtPoint>
+void add_piercing(const PiercingImageData &d, const PointBatch<n_values> &batch, AddAll &&add_all, AtPoint &&at_point)
 {
   std::vector<std::pair<std::size_t, std::array<double, n_values>>> near;
   for (std::size_t i = 0; i < batch.n; ++i)
@@ -128,12 +127,12 @@ void add_piercing(const PiercingImageData &d, const Batch &batch, double *const 
     const auto added = at_point(x);
     near.emplace_back(i, std::array<double, n_values>());
     for (std::size_t c = 0; c < n_values; ++c)
-      near.back().second[c] = values[c][i] + added[static_cast<Eigen::Index>(c)];
+      near.back().second[c] = batch.value[c][i] + added[static_cast<Eigen::Index>(c)];
   }
   add_all();
   for (const auto &[i, sums] : near)
     for (std::size_t c = 0; c < n_values; ++c)
-      values[c][i] = sums[c];
+      batch.value[c][i] = sums[c];
 }
 } // namespace
 
@@ -228,13 +227,12 @@ Vec3 PiercingImage::displacement(const Vec3 &x) const
 void PiercingImage::add_stress(const StressBatch &batch) const
 {
   add_piercing(
-      data, batch, batch.sigma, [&] { add_image_stress(data, batch); }, [&](const Vec3 &x) { return stress(x); });
+      data, batch, [&] { add_image_stress(data, batch); }, [&](const Vec3 &x) { return stress(x); });
 }
 
 void PiercingImage::add_displacement(const DisplacementBatch &batch) const
 {
   add_piercing(
-      data, batch, batch.u, [&] { add_image_displacement(data, batch); },
-      [&](const Vec3 &x) { return displacement(x); });
+      data, batch, [&] { add_image_displacement(data, batch); }, [&](const Vec3 &x) { return displacement(x); });
 }
 } // namespace ddfem

@@ -28,9 +28,8 @@
 
 #include "dd/common/types.h"
 #include "dd/elasticity/isotropic.h"
+#include "dd/elasticity/point_batch.h"
 #include "dd/elasticity/triangular_loop.h"
-#include "dd/elasticity/vectorised/displacement_kernels.h"
-#include "dd/elasticity/vectorised/stress_kernels.h"
 
 namespace ddfem
 {

@@ -43,13 +43,6 @@ SymTensor SegmentStressField::operator()(const Vec3 &x) const
                    t);
 }
 
-void SegmentStressField::add(const StressBatch &batch) const
-{
-  LineTable table;
-  table.add_segment(x1, x2, b);
-  add_segment_stress(medium, table, batch);
-}
-
 RayStressField::RayStressField(const IsotropicMedium &medium_, const Vec3 &origin_, const Vec3 &direction_,
                                const Vec3 &b_)
     : medium(medium_), origin(origin_), direction(direction_), b(b_)
@@ -63,13 +56,6 @@ SymTensor RayStressField::operator()(const Vec3 &x) const
                                               line_of(origin, Vec3::Zero(), direction, b, 0.0),
                                               formulas::vector_of<double>(x)),
                    direction);
-}
-
-void RayStressField::add(const StressBatch &batch) const
-{
-  LineTable table;
-  table.add_ray(origin, direction, b);
-  add_ray_stress(medium, table, batch);
 }
 
 SymTensor segment_stress(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &x1, const Vec3 &x2, const Vec3 &b)

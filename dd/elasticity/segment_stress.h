@@ -14,7 +14,6 @@
 
 #include "dd/common/types.h"
 #include "dd/elasticity/isotropic.h"
-#include "dd/elasticity/vectorised/stress_kernels.h"
 
 namespace ddfem
 {
@@ -36,8 +35,6 @@ public:
 
   /// Stress at @p x, MPa.
   SymTensor operator()(const Vec3 &x) const;
-  /// Adds the stress at many points, as add_segment_stress() does.
-  void add(const StressBatch &batch) const;
 
 private:
   IsotropicMedium medium;
@@ -53,8 +50,6 @@ public:
 
   /// Stress at @p x, MPa.
   SymTensor operator()(const Vec3 &x) const;
-  /// As add_ray_stress().
-  void add(const StressBatch &batch) const;
 
 private:
   IsotropicMedium medium;

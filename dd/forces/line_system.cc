@@ -2,6 +2,7 @@
 
 #include "dd/elasticity/distance.h"
 #include "dd/elasticity/segment_stress.h"
+#include "dd/elasticity/vectorised/stress_kernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,7 +100,7 @@ void LineSystem::add_stress(const std::span<const Vec3> points, const std::span<
   add_ray_stress(elastic_medium, rays_in_table, buffer.batch());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    values[i] += buffer.stress(i);
+    values[i] += buffer.value(i);
     if (images)
       values[i] += images->far_stress(in_cell(points[i]));
   }

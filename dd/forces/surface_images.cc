@@ -2,7 +2,8 @@
 
 #include "dd/elasticity/distance.h"
 #include "dd/elasticity/segment_stress.h"
-#include "dd/elasticity/triangle_displacement.h"
+#include "dd/elasticity/vectorised/displacement_kernels.h"
+#include "dd/elasticity/vectorised/stress_kernels.h"
 
 #include <algorithm>
 #include <array>
@@ -56,12 +57,6 @@ private:
 SymTensor SurfaceImages::RayTurn::stress(const Vec3 &x) const
 {
   return ray_stress(medium, x, origin, -Vec3::UnitZ(), burgers) - ray_stress(medium, x, origin, direction, burgers);
-}
-
-Vec3 SurfaceImages::RayTurn::displacement(const Vec3 &x) const
-{
-  return triangle_displacement(medium.nu, x, LoopVertex::at(origin), LoopVertex::towards(-Vec3::UnitZ()),
-                               LoopVertex::towards(direction), burgers);
 }
 
 void SurfaceImages::RayTurn::add_stress(const StressBatch &batch) const
@@ -207,6 +202,15 @@ SymTensor SurfaceImages::stress(const std::span<const std::size_t> images, const
       images.size(), [&](const std::size_t i) { return images[i]; }, x);
 }
 
+/// A batch of the points in the frame of a plane.
+template <typename Buffer> Buffer SurfaceImages::local_points(const Frame &frame, const std::span<const Vec3> points)
+{
+  Buffer buffer(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k)
+    buffer.set_point(k, frame.local(points[k]));
+  return buffer;
+}
+
 template <typename PieceNumber, typename Visit>
 void SurfaceImages::for_each_plane(const std::size_t n, PieceNumber &&number, Visit &&visit) const
 {
@@ -228,13 +232,11 @@ void SurfaceImages::add_stress_of(const std::size_t n, PieceNumber &&number, con
   for_each_plane(n, number,
                  [&](const Frame &frame, const std::vector<std::size_t> &of_plane)
                  {
-                   StressBuffer buffer(points.size());
-                   for (std::size_t k = 0; k < points.size(); ++k)
-                     buffer.set_point(k, frame.local(points[k]));
+                   StressBuffer buffer = local_points<StressBuffer>(frame, points);
                    for (const std::size_t i : of_plane)
                      std::visit([&](const auto &field) { field.add_stress(buffer.batch()); }, pieces[i].field);
                    for (std::size_t k = 0; k < points.size(); ++k)
-                     values[k] += frame.to_sample(buffer.stress(k));
+                     values[k] += frame.to_sample(buffer.value(k));
                  });
 }
 
@@ -259,41 +261,26 @@ std::vector<SymTensor> SurfaceImages::stress(const std::span<const Vec3> points)
   return values;
 }
 
-Vec3 SurfaceImages::displacement_of(const Piece &piece, const Vec3 &x) const
+template <typename PieceNumber>
+void SurfaceImages::add_displacement_of(const std::size_t n, PieceNumber &&number, const std::span<const Vec3> points,
+                                        const std::span<Vec3> values) const
 {
-  const Frame &frame = planes[piece.plane];
-  const Vec3 local = frame.local(x);
-  return frame.to_local.transpose() *
-         std::visit([&](const auto &field) { return field.displacement(local); }, piece.field);
+  for_each_plane(n, number,
+                 [&](const Frame &frame, const std::vector<std::size_t> &of_plane)
+                 {
+                   DisplacementBuffer buffer = local_points<DisplacementBuffer>(frame, points);
+                   for (const std::size_t i : of_plane)
+                     std::visit([&](const auto &field) { field.add_displacement(buffer.batch()); }, pieces[i].field);
+                   for (std::size_t k = 0; k < points.size(); ++k)
+                     values[k] += frame.to_local.transpose() * buffer.value(k);
+                 });
 }
 
-Vec3 SurfaceImages::displacement(const std::span<const unsigned> images, const Vec3 &x) const
+void SurfaceImages::add_displacement(const std::span<const unsigned> images, const std::span<const Vec3> points,
+                                     const std::span<Vec3> values) const
 {
-  Vec3 u = Vec3::Zero();
-  for (const unsigned i : images)
-    u += displacement_of(pieces[i], x);
-  return u;
-}
-
-void SurfaceImages::add_displacement(const std::span<const Vec3> points, const std::span<Vec3> values) const
-{
-  for_each_plane(
-      pieces.size(), [](const std::size_t i) { return i; },
-      [&](const Frame &frame, const std::vector<std::size_t> &of_plane)
-      {
-        double x[3][portion], u[3][portion] = {};
-        for (std::size_t k = 0; k < points.size(); ++k)
-        {
-          const Vec3 local = frame.local(points[k]);
-          for (std::size_t c = 0; c < 3; ++c)
-            x[c][k] = local[static_cast<Eigen::Index>(c)];
-        }
-        const DisplacementBatch batch{points.size(), {x[0], x[1], x[2]}, {u[0], u[1], u[2]}};
-        for (const std::size_t i : of_plane)
-          std::visit([&](const auto &field) { field.add_displacement(batch); }, pieces[i].field);
-        for (std::size_t k = 0; k < points.size(); ++k)
-          values[k] += frame.to_local.transpose() * Vec3(u[0][k], u[1][k], u[2][k]);
-      });
+  add_displacement_of(
+      images.size(), [&](const std::size_t i) { return images[i]; }, points, values);
 }
 
 std::vector<Vec3> SurfaceImages::displacement(const std::span<const Vec3> points) const
@@ -303,7 +290,9 @@ std::vector<Vec3> SurfaceImages::displacement(const std::span<const Vec3> points
   for (std::size_t first = 0; first < points.size(); first += portion)
   {
     const std::size_t n = std::min(portion, points.size() - first);
-    add_displacement(points.subspan(first, n), std::span(values).subspan(first, n));
+    add_displacement_of(
+        pieces.size(), [](const std::size_t i) { return i; }, points.subspan(first, n),
+        std::span(values).subspan(first, n));
   }
   return values;
 }

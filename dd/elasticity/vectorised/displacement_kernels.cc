@@ -15,7 +15,7 @@ namespace ddfem::HWY_NAMESPACE
 void add_loops(double nu, const TriangularLoop *loops, std::size_t n_loops, double reference_length,
                const DisplacementBatch &batch)
 {
-  add_at_points(batch.n, batch.x, batch.u,
+  add_at_points(batch.n, batch.x, batch.value,
                 [=](std::size_t, const Vector<Real> &x) HWY_ATTR
                 {
                   Vector<Real> sum{};
@@ -47,13 +47,12 @@ std::vector<Vec3> triangle_displacements(const double nu, const std::span<const 
   for (std::size_t first = 0; first < points.size(); first += portion)
   {
     const std::size_t n = std::min(portion, points.size() - first);
-    double x[3][portion], u[3][portion] = {};
+    DisplacementBuffer buffer(n);
     for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t c = 0; c < 3; ++c)
-        x[c][i] = points[first + i][static_cast<Eigen::Index>(c)];
-    add_triangle_displacement(nu, loops, {n, {x[0], x[1], x[2]}, {u[0], u[1], u[2]}});
+      buffer.set_point(i, points[first + i]);
+    add_triangle_displacement(nu, loops, buffer.batch());
     for (std::size_t i = 0; i < n; ++i)
-      values[first + i] = Vec3(u[0][i], u[1][i], u[2][i]);
+      values[first + i] = buffer.value(i);
   }
   return values;
 }

@@ -2,22 +2,14 @@
 // runs on.
 #pragma once
 
+#include "dd/elasticity/point_batch.h"
 #include "dd/elasticity/triangular_loop.h"
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
 namespace ddfem
 {
-/// Points and the displacements at them, component by component.
-struct DisplacementBatch
-{
-  std::size_t n;      ///< number of points
-  const double *x[3]; ///< coordinates, nm
-  double *u[3];       ///< nm
-};
-
 /// The displacement (nm) of all loops at points, threaded; independent of the number of threads.
 std::vector<Vec3> triangle_displacements(double nu, std::span<const TriangularLoop> loops,
                                          std::span<const Vec3> points);

@@ -104,12 +104,12 @@ HWY_INLINE void add_by_elements(const SegmentImageData &d, const Vec3 &x, const 
 
 void add_stress_by_lanes(const SegmentImageData &d, const StressBatch &batch, const double *counts)
 {
-  add_by_lanes<StressOfImage>(d, batch.n, batch.x, batch.sigma, counts);
+  add_by_lanes<StressOfImage>(d, batch.n, batch.x, batch.value, counts);
 }
 
 void add_displacement_by_lanes(const SegmentImageData &d, const DisplacementBatch &batch, const double *counts)
 {
-  add_by_lanes<DisplacementOfImage>(d, batch.n, batch.x, batch.u, counts);
+  add_by_lanes<DisplacementOfImage>(d, batch.n, batch.x, batch.value, counts);
 }
 
 void add_stress_by_elements(const SegmentImageData &d, const Vec3 &x, const internal::LinePoints &points,
@@ -126,26 +126,26 @@ void add_displacement_by_elements(const SegmentImageData &d, const Vec3 &x, cons
 
 void add_leg_stress(const LegImageData &d, const StressBatch &batch)
 {
-  add_at_points(batch.n, batch.x, batch.sigma,
+  add_at_points(batch.n, batch.x, batch.value,
                 [&](std::size_t, const Vector<Real> &x) HWY_ATTR { return values_of(stress_of(d, x)); });
 }
 
 void add_leg_displacement(const LegImageData &d, const DisplacementBatch &batch)
 {
-  add_at_points(batch.n, batch.x, batch.u,
+  add_at_points(batch.n, batch.x, batch.value,
                 [&](std::size_t, const Vector<Real> &x) HWY_ATTR { return values_of(displacement_of(d, x)); });
 }
 
 void add_piercing_stress(const PiercingImageData &d, const StressBatch &batch)
 {
-  add_at_points(batch.n, batch.x, batch.sigma,
+  add_at_points(batch.n, batch.x, batch.value,
                 [&](std::size_t, const Vector<Real> &x) HWY_ATTR
                 { return values_of(stress_of(d, x, far_torsion(d, x - vector_of<Real>(d.origin)))); });
 }
 
 void add_piercing_displacement(const PiercingImageData &d, const DisplacementBatch &batch)
 {
-  add_at_points(batch.n, batch.x, batch.u,
+  add_at_points(batch.n, batch.x, batch.value,
                 [&](std::size_t, const Vector<Real> &x) HWY_ATTR
                 { return values_of(displacement_of(d, x, far_torsion(d, x - vector_of<Real>(d.origin)))); });
 }
@@ -167,51 +167,43 @@ HWY_EXPORT(add_piercing_displacement);
 namespace
 {
 /// Points [first, first + n) of a batch.
-StressBatch part_of(const StressBatch &batch, const std::size_t first, const std::size_t n)
+template <std::size_t n_values>
+PointBatch<n_values> part_of(const PointBatch<n_values> &batch, const std::size_t first, const std::size_t n)
 {
-  StressBatch part{n, {}, {}};
+  PointBatch<n_values> part{n, {}, {}};
   std::transform(batch.x, batch.x + 3, part.x, [&](const double *p) { return p + first; });
-  std::transform(batch.sigma, batch.sigma + 6, part.sigma, [&](double *p) { return p + first; });
+  std::transform(batch.value, batch.value + n_values, part.value, [&](double *p) { return p + first; });
   return part;
 }
 
-DisplacementBatch part_of(const DisplacementBatch &batch, const std::size_t first, const std::size_t n)
-{
-  DisplacementBatch part{n, {}, {}};
-  std::transform(batch.x, batch.x + 3, part.x, [&](const double *p) { return p + first; });
-  std::transform(batch.u, batch.u + 3, part.u, [&](double *p) { return p + first; });
-  return part;
-}
-
-/// @p by_lanes(part, counts) and @p by_elements(x, points, values) add to the points of a portion; @p values_of are
-/// the arrays of a batch that they add to.
-template <std::size_t n_values, class Batch, class ByLanes, class ByElements>
-void add_segment_image(const SegmentImageData &image, const Batch &batch, double *const (Batch::*values_of)[n_values],
-                       ByLanes &&by_lanes, ByElements &&by_elements)
+/// @p by_lanes(image, part, counts) and @p by_elements(image, x, points, values) add to the points of a portion.
+template <std::size_t n_values, class ByLanes, class ByElements>
+void add_segment_image(const SegmentImageData &image, const PointBatch<n_values> &batch, ByLanes *const by_lanes,
+                       ByElements *const by_elements)
 {
   constexpr std::size_t portion = 64;
   if (!(image.length > 0))
     return;
   for (std::size_t first = 0; first < batch.n; first += portion)
   {
-    const Batch part = part_of(batch, first, std::min(portion, batch.n - first));
+    const auto part = part_of(batch, first, std::min(portion, batch.n - first));
     std::array<double, portion + LineTable::block_size> counts{};
     internal::plan_for_image(image, part.n, part.x, counts.data());
     std::fill(counts.begin() + static_cast<std::ptrdiff_t>(part.n), counts.end(), counts[part.n - 1]);
-    by_lanes(part, counts.data());
+    by_lanes(image, part, counts.data());
     for (std::size_t i = 0; i < part.n; ++i)
       if (counts[i] == 0.0)
       {
         const Vec3 x(part.x[0][i], part.x[1][i], part.x[2][i]);
         double sums[n_values] = {};
         internal::LinePoints points;
-        const auto use = [&] { by_elements(x, points, sums); };
+        const auto use = [&] { by_elements(image, x, points, sums); };
         internal::integrate_graded(internal::image_singularities(image, x), image.length, image.tolerance,
                                    [&](const double s, const double weight)
                                    { points.add(s / image.length, weight / image.length, use); });
         points.finish(use);
         for (std::size_t c = 0; c < n_values; ++c)
-          (part.*values_of)[c][i] += sums[c];
+          part.value[c][i] += sums[c];
       }
   }
 }
@@ -219,26 +211,14 @@ void add_segment_image(const SegmentImageData &image, const Batch &batch, double
 
 void add_image_stress(const SegmentImageData &image, const StressBatch &batch)
 {
-  add_segment_image<6>(
-      image, batch, &StressBatch::sigma,
-      [&](const StressBatch &part, const double *counts) {
-        HWY_DYNAMIC_DISPATCH(add_stress_by_lanes)(image, part, counts);
-      },
-      [&](const Vec3 &x, const internal::LinePoints &points, double(&sums)[6]) {
-        HWY_DYNAMIC_DISPATCH(add_stress_by_elements)(image, x, points, sums);
-      });
+  add_segment_image(image, batch, &HWY_DYNAMIC_DISPATCH(add_stress_by_lanes),
+                    &HWY_DYNAMIC_DISPATCH(add_stress_by_elements));
 }
 
 void add_image_displacement(const SegmentImageData &image, const DisplacementBatch &batch)
 {
-  add_segment_image<3>(
-      image, batch, &DisplacementBatch::u,
-      [&](const DisplacementBatch &part, const double *counts) {
-        HWY_DYNAMIC_DISPATCH(add_displacement_by_lanes)(image, part, counts);
-      },
-      [&](const Vec3 &x, const internal::LinePoints &points, double(&sums)[3]) {
-        HWY_DYNAMIC_DISPATCH(add_displacement_by_elements)(image, x, points, sums);
-      });
+  add_segment_image(image, batch, &HWY_DYNAMIC_DISPATCH(add_displacement_by_lanes),
+                    &HWY_DYNAMIC_DISPATCH(add_displacement_by_elements));
 }
 
 void add_image_stress(const LegImageData &image, const StressBatch &batch)

@@ -27,7 +27,7 @@ HWY_INLINE void add_lines(const IsotropicMedium &medium, const Sources &sources,
                           TermsOf &&terms_of)
 {
   const StressConstants<Real> constants(medium);
-  add_at_points(batch.n, batch.x, batch.sigma,
+  add_at_points(batch.n, batch.x, batch.value,
                 [&](std::size_t, const Vector<Real> &x) HWY_ATTR
                 {
                   StressSum<Real> sum{};
