@@ -1,13 +1,23 @@
 // Cost of the boundary-value problem in a step of a simulation, split into its parts, and the error that the tolerance of
 // the solve leaves in the stress at the segments.
 //
-//   mpirun -np RANKS ddfem_correction_benchmark DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE [SOLVER]]]
+//   mpirun -np RANKS ddfem_correction_benchmark DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE [SOLVER [DEPTH]]]]
 //
 // Cube of 1 micrometre with ELEMENTS per edge, clamped at z- and z+, filled with circular glide loops of 20 segments and
 // threading lines that end at the free faces, about SEGMENTS segments in all. Loops and lines move smoothly by about 0.5 nm
 // a step. TOLERANCE: of the solves of the steps, 1e-5 unless given. SOLVER: multigrid (unless
-// given) or direct. One line of output per quantity; times are wall times in seconds, medians over the steps after the first six.
+// given) or direct. DEPTH: of the analytic images under the four free faces, in elements; 0 (unless given): no images. One line
+// of output per quantity; times are wall times in seconds, medians over the steps after the first six.
+#include "coupling/convert.h"
 #include "coupling/dislocation_tractions.h"
+#include "coupling/face_displacements.h"
+#include "coupling/grain_geometry.h"
+#include "coupling/image_planes.h"
+#include "dd/common/parallel.h"
+#include "dd/elasticity/vectorised/displacement_kernels.h"
+#include "dd/forces/nodal_forces.h"
+#include "dd/forces/segment_points.h"
+#include "dd/forces/surface_images.h"
 #include "dd/geometry/grain_shape.h"
 #include "dd/microstructure/sources.h"
 #include "dd/network/network.h"
@@ -117,7 +127,7 @@ class Benchmark
 {
 public:
   Benchmark(const unsigned degree, const unsigned elements, const int segments, const int n_steps,
-            const double tolerance, const fem::Solver solver)
+            const double tolerance, const fem::Solver solver, const double image_depth)
       : steps(n_steps), pieces(random_pieces(segments)), shape(Vec3::Zero(), Vec3::Constant(edge))
   {
     fem::MeshParameters parameters;
@@ -133,6 +143,10 @@ public:
     problem = std::make_unique<fem::ElasticProblem>(*mesh, elasticity, fem::Moduli{medium.mu, medium.nu},
                                                     std::vector<fem::DisplacementCondition>{{4, all}, {5, all}});
     none.resize(problem->boundary_points().size());
+    if (image_depth > 0)
+      planes = coupling::image_planes(coupling::boundary_polygons(*mesh), {4, 5});
+    image_settings.depth = image_depth * edge / elements;
+    resolution = 0.05 * edge / elements;
   }
 
   void run()
@@ -165,20 +179,88 @@ private:
     const Network network = network_at(pieces, step);
     const LineSystem lines(medium, network, &shape, RayDirection::normal, nullptr, nullptr);
     points = gauss_points(network);
+    if (count)
+      prescribed_displacement(network_at(pieces, step - 1), network);
+    if (!planes.empty())
+      measure("images, displacement at the boundary included", count, [&] { update_images(lines); });
     fem::TractionSummary summary;
     fem::SolveInfo info;
-    measure("tractions", count, [&] { summary = problem->set_tractions(coupling::DislocationTractions(lines)); });
+    measure("tractions", count,
+            [&] { summary = problem->set_tractions(coupling::DislocationTractions(lines, &images)); });
     measure("warm solve", count, [&] { info = problem->solve(none); });
     measure("stress at segments, recovery included", count, [&] { problem->stress_at(points); });
     measure("stress at segments, again", count, [&] { problem->stress_at(points); });
     if (!count)
       return;
+    if (!planes.empty())
+      measure("stress of images at segments", count, [&] { stress_of_images(network); });
+    measure("segment forces", count, [&] { segment_forces(network); });
     records["segments"].push_back(static_cast<double>(network.n_segments()));
     records["rays"].push_back(static_cast<double>(lines.rays().size()));
     records["pairs of source and point"].push_back(static_cast<double>(summary.n_evaluations));
+    records["images"].push_back(static_cast<double>(images.n_images()));
     records["imbalance of forces"].push_back(summary.force.norm() / summary.absolute_force);
     records["warm iterations"].push_back(info.iterations);
     records["residual at the start"].push_back(info.initial_residual);
+  }
+
+  std::vector<Vec3> boundary_points() const
+  {
+    std::vector<Vec3> nodes;
+    for (const auto &p : problem->boundary_points())
+      nodes.push_back(coupling::to_vec3(p));
+    return nodes;
+  }
+
+  void update_images(const LineSystem &lines)
+  {
+    images = SurfaceImages(lines, planes, image_settings);
+    images.displacement(boundary_points());
+    problem->project_on_conditions(coupling::ImageDisplacement(images, 2, resolution));
+  }
+
+  /// At the points that FiniteGrain::correction_at_segments takes, divided among the ranks as there.
+  void stress_of_images(const Network &network) const
+  {
+    const auto smooth_length = [&](const Vec3 &x)
+    {
+      double depth = image_settings.depth;
+      for (const ImagePlane &p : planes)
+        depth = std::min(depth, (p.point - x).dot(p.outward));
+      return std::max(depth, 0.0) + medium.a;
+    };
+    const SegmentPoints dense(network, smooth_length);
+    const IndexRange owned = owned_range(dense.positions().size(), MPI_COMM_WORLD);
+    images.stress(std::span(dense.positions()).subspan(owned.begin, owned.end - owned.begin));
+  }
+
+  /// What FiniteGrain::add_swept does: two triangles per segment, of the motion in a step.
+  void prescribed_displacement(const Network &before, const Network &after)
+  {
+    std::vector<TriangularLoop> loops;
+    for (const SegmentIndex s : before.segments())
+    {
+      const LoopVertex p{before.position(before.start(s))}, q{before.position(before.end(s))};
+      const LoopVertex p_new{after.position(after.start(s))}, q_new{after.position(after.end(s))};
+      loops.emplace_back(p, p_new, q, before.burgers(s));
+      loops.emplace_back(q, p_new, q_new, before.burgers(s));
+    }
+    measure("displacement by swept area on the boundary", true,
+            [&] { triangle_displacements(medium.nu, loops, boundary_points()); });
+    measure("its projection on the held faces", true,
+            [&] {
+              problem->project_on_conditions(coupling::SweptDisplacement(loops, medium.nu, 2, 1e3 * edge, resolution));
+            });
+  }
+
+  void segment_forces(const Network &network) const
+  {
+    ForceSettings settings;
+    settings.medium = medium;
+    settings.core_cutoff_radius = medium.a;
+    ForceEnvironment environment;
+    environment.shape = &shape;
+    compute_nodal_forces(network, settings, environment, MPI_COMM_WORLD);
   }
 
   /// Cold references, and the error of the stress at segments for several tolerances. With the loads of the last step.
@@ -226,6 +308,10 @@ private:
   fem::TriangulationPointer mesh;
   std::unique_ptr<fem::ElasticProblem> problem;
   std::vector<dealii::Tensor<1, 3>> none;
+  std::vector<ImagePlane> planes;
+  ImageSettings image_settings;
+  SurfaceImages images;
+  double resolution; ///< of displacements on the held faces, nm
   std::vector<dealii::Point<3>> points;
   std::map<std::string, std::vector<double>> records;
 };
@@ -235,7 +321,7 @@ int main(int argc, char **argv)
 {
   if (argc < 4)
   {
-    std::fprintf(stderr, "usage: %s DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE [SOLVER]]]\n", argv[0]);
+    std::fprintf(stderr, "usage: %s DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE [SOLVER [DEPTH]]]]\n", argv[0]);
     return 2;
   }
   const int threads = omp_get_max_threads();
@@ -244,7 +330,8 @@ int main(int argc, char **argv)
   const auto number = [&](const int i) { return static_cast<unsigned>(std::strtoul(argv[i], nullptr, 10)); };
   Benchmark(number(1), number(2), static_cast<int>(number(3)), argc > 4 ? static_cast<int>(number(4)) : 15,
             argc > 5 ? std::strtod(argv[5], nullptr) : 1e-5,
-            argc > 6 && std::string(argv[6]) == "direct" ? fem::Solver::direct : fem::Solver::multigrid)
+            argc > 6 && std::string(argv[6]) == "direct" ? fem::Solver::direct : fem::Solver::multigrid,
+            argc > 7 ? std::strtod(argv[7], nullptr) : 0.0)
       .run();
   return 0;
 }
