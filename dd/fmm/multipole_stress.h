@@ -53,6 +53,9 @@ inline constexpr int level_of_distant_rays = 3;
 std::vector<RaySource> cut_rays(std::span<const RaySource> rays, const RootGrid &grid, double shortest,
                                 std::vector<LineSource> &lines);
 
+/// Root grid of a periodic cell from @p origin with edges @p lengths (nm): boxes that are nearly cubes.
+RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths);
+
 /// Root cube around lines, rays' origins and points; four times as wide if there are rays.
 RootGrid enclosing_grid(std::span<const LineSource> lines, std::span<const RaySource> rays, std::span<const Vec3> points);
 
@@ -79,6 +82,8 @@ public:
   std::vector<SymTensor> stress(MPI_Comm comm, Part part = Part::all);
 
   const Octree &octree() const { return tree; }
+  /// The lines in the order of the tree.
+  const std::vector<LineSource> &lines() const { return sources; }
   int order() const { return expansion_order_; }
   const PhaseTimes &times() const { return seconds; }
 

@@ -75,6 +75,7 @@ void Octree::sort_into_roots(const std::span<const LineSource> lines, const std:
   {
     line_middle.emplace_back(0.5 * (l.start + l.end));
     line_length.push_back((l.end - l.start).norm());
+    longest_of_all = std::max(longest_of_all, line_length.back());
   }
   point.assign(points.begin(), points.end());
   line_at.resize(lines.size());

@@ -82,7 +82,14 @@ public:
   /// Translations of the images, nm; the first is zero.
   const std::vector<Vec3> &image_shifts() const { return shifts; }
 
+  /// Calls visit(position in the tree's order, image) for every line whose middle is nearer to @p x than @p radius plus half its
+  /// length, in a fixed order; a few others may be among them.
+  template <class Visit> void for_each_line_near(const Vec3 &x, double radius, Visit &&visit) const;
+
 private:
+  template <class Visit>
+  void visit_lines(const Box &box, const Vec3 &x, double radius, std::size_t image, Visit &visit) const;
+
   struct Neighbour
   {
     std::uint32_t box;
@@ -109,5 +116,29 @@ private:
   std::vector<Vec3> line_middle, point; ///< as given
   std::vector<double> line_length;      ///< as given
   std::vector<Vec3> shifts;
+  double longest_of_all = 0; ///< line, nm
 };
+template <class Visit>
+void Octree::for_each_line_near(const Vec3 &x, const double radius, Visit &&visit) const
+{
+  for (std::size_t image = 0; image < shifts.size(); ++image)
+    for (std::size_t root = 0; root < level_begin[1]; ++root)
+      visit_lines(all[root], x - shifts[image], radius, image, visit);
+}
+
+template <class Visit>
+void Octree::visit_lines(const Box &box, const Vec3 &x, const double radius, const std::size_t image,
+                         Visit &visit) const
+{
+  // Lines that leaves of level 0 hold may be of any length.
+  const double overhang = box.level == 0 ? longest_of_all : settings.longest_line * size(box);
+  const Vec3 outside = ((x - centre(box)).cwiseAbs() - 0.5 * edges(box)).cwiseMax(0.0);
+  const double reach = radius + 0.5 * overhang;
+  if (box.n_lines() == 0 || outside.squaredNorm() > reach * reach)
+    return;
+  for (std::uint32_t k = box.lines_begin; k < box.own_lines_end; ++k)
+    visit(k, image);
+  for (std::uint32_t i = 0; i < box.n_children; ++i)
+    visit_lines(all[box.first_child + i], x, radius, image, visit);
+}
 } // namespace ddfem::fmm

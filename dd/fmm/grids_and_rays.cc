@@ -23,6 +23,23 @@ RootGrid enclosing_grid(const std::span<const LineSource> lines, const std::span
   return {box.center() - Vec3::Constant(0.5 * width), Vec3::Constant(width), {1, 1, 1}, false};
 }
 
+RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths)
+{
+  RootGrid grid{origin, lengths, {1, 1, 1}, true};
+  for (int k = 1; k <= 4; ++k) // boxes along the shortest edge: as few as make the boxes cubes to 15 %
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      const double n = std::round(lengths[c] / (lengths.minCoeff() / k));
+      grid.n[static_cast<std::size_t>(c)] = static_cast<int>(n);
+      grid.edges[c] = lengths[c] / n;
+    }
+    if (grid.edges.maxCoeff() < 1.15 * grid.edges.minCoeff())
+      break;
+  }
+  return grid;
+}
+
 std::vector<RaySource> cut_rays(const std::span<const RaySource> rays, const RootGrid &grid, const double shortest,
                                 std::vector<LineSource> &lines)
 {

@@ -1,0 +1,147 @@
+#include "dd/elasticity/distance.h"
+#include "dd/elasticity/gauss.h"
+#include "dd/elasticity/segment_stress.h"
+#include "dd/forces/multipole_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ddfem
+{
+namespace
+{
+/// Sources nearer than this many half lengths of a panel are replaced, approximately; the number of Gauss points follows.
+constexpr double typical_near_distance = 2.7;
+
+double bernstein_radius(const double distance)
+{
+  return distance + std::sqrt(1 + distance * distance);
+}
+
+int n_points_for(const double tolerance)
+{
+  return std::max(1, static_cast<int>(std::ceil(-0.5 * std::log(tolerance) /
+                                                std::log(bernstein_radius(typical_near_distance)) - 0.05)));
+}
+
+/// Distance, in half lengths, from which @p n points reach the tolerance.
+double near_distance_for(const double tolerance, const int n)
+{
+  const double rho = std::pow(tolerance, -0.5 / n);
+  return 0.5 * (rho - 1 / rho);
+}
+
+SegmentForces &operator+=(SegmentForces &f, const SegmentForces &g)
+{
+  f.start += g.start;
+  f.end += g.end;
+  return f;
+}
+} // namespace
+
+MultipoleForces::MultipoleForces(const LineSystem &system_, const double tolerance, const double pair_tolerance_,
+                                 MPI_Comm comm)
+    : system(system_), pair_tolerance(pair_tolerance_), n_gauss(n_points_for(tolerance)),
+      near_distance(near_distance_for(tolerance, n_gauss))
+{
+  for (const StraightLine &l : system.lines())
+    longest_panel += 2 * (l.end - l.start).norm() / static_cast<double>(system.lines().size());
+  const GaussRule rule = gauss_rule(n_gauss);
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < system.lines().size(); ++i)
+  {
+    first_point.push_back(points.size());
+    const StraightLine &line = system.lines()[i];
+    for (const Panel &p : panels_of(i))
+      for (const double z : rule.points)
+        points.emplace_back(line.start + (p.begin + z * (p.end - p.begin)) * (line.end - line.start));
+  }
+  multipoles = std::make_unique<MultipoleField>(system, points, tolerance);
+  stress = multipoles->stress(comm);
+}
+
+std::vector<MultipoleForces::Panel> MultipoleForces::panels_of(const std::size_t i) const
+{
+  const StraightLine &line = system.lines()[i];
+  const double n = std::max(1.0, std::ceil((line.end - line.start).norm() / longest_panel));
+  std::vector<Panel> panels;
+  for (double k = 0; k < n; ++k)
+    panels.push_back({k / n, (k + 1) / n});
+  return panels;
+}
+
+template <class Stress>
+SegmentForces MultipoleForces::quadrature(const StraightLine &line, const Panel &panel, const Vec3 &shift,
+                                          Stress &&stress_at) const
+{
+  const Vec3 t = line.end - line.start;
+  const GaussRule rule = gauss_rule(n_gauss);
+  SegmentForces f;
+  for (std::size_t q = 0; q < rule.points.size(); ++q)
+  {
+    const double s = panel.begin + rule.points[q] * (panel.end - panel.begin);
+    const SymTensor sigma = stress_at(q, Vec3(line.start + shift + s * t));
+    const Vec3 df = rule.weights[q] * (panel.end - panel.begin) * contract(sigma, line.burgers).cross(t);
+    f.start += (1 - s) * df;
+    f.end += s * df;
+  }
+  return f;
+}
+
+SegmentForces MultipoleForces::operator()(const std::size_t i) const
+{
+  SegmentForces sum;
+  std::size_t point = first_point[i];
+  for (const Panel &panel : panels_of(i))
+  {
+    sum += panel_force(i, panel, point);
+    point += static_cast<std::size_t>(n_gauss);
+  }
+  return sum;
+}
+
+SegmentForces MultipoleForces::panel_force(const std::size_t i, const Panel &panel, const std::size_t first) const
+{
+  const StraightLine &line = system.lines()[i];
+  const SegmentStressField own(system.medium(), line.start, line.end, line.burgers);
+  SegmentForces force = quadrature(line, panel, Vec3::Zero(),
+                                   [&](std::size_t q, const Vec3 &x) { return SymTensor(stress[first + q] - own(x)); });
+  replace_near(i, panel, force);
+  return force;
+}
+
+void MultipoleForces::replace_near(const std::size_t i, const Panel &panel, SegmentForces &force) const
+{
+  const StraightLine &line = system.lines()[i];
+  const Vec3 t = line.end - line.start;
+  const double half = 0.5 * (panel.end - panel.begin) * t.norm();
+  Vec3 middle = line.start + 0.5 * (panel.begin + panel.end) * t;
+  const Vec3 shift = system.cell() ? system.cell()->shift_into_cell(middle) : Vec3(Vec3::Zero());
+  middle += shift;
+  const Vec3 start = line.start + shift + panel.begin * t, end = line.start + shift + panel.end * t;
+  const fmm::Octree &tree = multipoles->sum().octree();
+  tree.for_each_line_near(
+      middle, (near_distance + 1) * half,
+      [&](const std::uint32_t k, const std::size_t image)
+      {
+        const fmm::LineSource &source = multipoles->sum().lines()[k];
+        const Vec3 x1 = source.start + tree.image_shifts()[image], x2 = source.end + tree.image_shifts()[image];
+        const double reach = (near_distance + 1) * half + 0.5 * (x2 - x1).norm();
+        if ((0.5 * (x1 + x2) - middle).squaredNorm() > reach * reach ||
+            distance_segment_segment(x1, x2, start, end).squared > std::pow(near_distance * half, 2))
+          return;
+        // In a periodic cell the line itself is the image that the shift of the panel leads to.
+        const bool is_itself = tree.line_order()[k] == i && (x1 - line.start - shift).norm() < 1e-6 * half;
+        if (is_itself)
+          return;
+        const SegmentStressField field(system.medium(), x1, x2, source.burgers);
+        const SegmentForces wrong =
+            quadrature(line, panel, shift, [&](std::size_t, const Vec3 &x) { return field(x); });
+        const SegmentForces exact =
+            segment_force(system.medium(), x1, x2, source.burgers, start, end, line.burgers, pair_tolerance);
+        // Linear shape functions of the panel's ends, in those of the line's.
+        force.start += (1 - panel.begin) * exact.start + (1 - panel.end) * exact.end - wrong.start;
+        force.end += panel.begin * exact.start + panel.end * exact.end - wrong.end;
+      });
+}
+} // namespace ddfem
