@@ -6,7 +6,7 @@
 namespace ddfem::fmm
 {
 /// Order of the expansions for a requested error of the far stress, relative to its rms. @throws std::invalid_argument
-/// unless 1e-9 <= @p tolerance <= 0.1.
+/// unless 1e-8 <= @p tolerance <= 0.1.
 int expansion_order(double tolerance);
 
 /// Order that boxes at @p distance (between centres, in box sizes, at least 2) need for the error that boxes at distance 2

@@ -80,7 +80,8 @@ MultipoleStress::MultipoleStress(const IsotropicMedium &medium_, const Multipole
   for (std::uint32_t i = 0; i < tree.boxes().size(); ++i)
     if (tree.boxes()[i].is_leaf() && tree.boxes()[i].n_points() > 0)
       leaves.push_back(i);
-  std::sort(leaves.begin(), leaves.end(), [&](std::uint32_t a, std::uint32_t b)
+  std::sort(leaves.begin(), leaves.end(),
+            [&](std::uint32_t a, std::uint32_t b)
             { return tree.boxes()[a].points_begin < tree.boxes()[b].points_begin; });
   make_translations(grid);
 }
@@ -103,7 +104,8 @@ void MultipoleStress::make_translations(const RootGrid &grid)
   for (std::size_t box = 0; box < tree.boxes().size(); ++box)
     for (const FarLink &l : tree.far_links(box))
     {
-      const int k = ((l.offset[0] + largest_offset) * n + l.offset[1] + largest_offset) * n + l.offset[2] + largest_offset;
+      const int k =
+          ((l.offset[0] + largest_offset) * n + l.offset[1] + largest_offset) * n + l.offset[2] + largest_offset;
       std::uint32_t &number = far_number[static_cast<std::size_t>(k)];
       if (number != std::numeric_limits<std::uint32_t>::max())
         continue;

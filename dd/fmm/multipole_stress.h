@@ -16,10 +16,7 @@ namespace ddfem::fmm
 class Expansions
 {
 public:
-  Expansions(std::size_t n_boxes, int order)
-      : n(n_harmonics(order)), fields_(n_boxes * n), q_(n_boxes * n, 0.0)
-  {
-  }
+  Expansions(std::size_t n_boxes, int order) : n(n_harmonics(order)), fields_(n_boxes * n), q_(n_boxes * n, 0.0) {}
   ExpansionView of(std::size_t box) { return {fields_.rows() + box * n, q_.data() + box * n}; }
   const Row *fields(std::size_t box) const { return fields_.rows() + box * n; }
   const double *q(std::size_t box) const { return q_.data() + box * n; }
@@ -38,7 +35,7 @@ struct PhaseTimes
 
 struct MultipoleSettings
 {
-  /// Requested error of the far stress, relative to its rms over the points; 1e-9 to 0.1.
+  /// Requested error of the far stress, relative to its rms over the points; 1e-8 to 0.1.
   double tolerance = 1e-3;
   /// Order of the expansions; 0: from the tolerance.
   int order = 0;
@@ -57,7 +54,8 @@ std::vector<RaySource> cut_rays(std::span<const RaySource> rays, const RootGrid 
 RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths);
 
 /// Root cube around lines, rays' origins and points; four times as wide if there are rays.
-RootGrid enclosing_grid(std::span<const LineSource> lines, std::span<const RaySource> rays, std::span<const Vec3> points);
+RootGrid enclosing_grid(std::span<const LineSource> lines, std::span<const RaySource> rays,
+                        std::span<const Vec3> points);
 
 /**
  * Stress of lines at points: near pairs of boxes by the closed form (segment_stress.h), distant pairs by expansions of nine
@@ -115,18 +113,18 @@ private:
   MultipoleSettings settings;
   int expansion_order_;
   Octree tree;
-  std::vector<LineSource> sources;       ///< in the tree's order
+  std::vector<LineSource> sources; ///< in the tree's order
   std::vector<RaySource> rays;
-  std::array<std::vector<double>, 3> x;  ///< points in the tree's order
+  std::array<std::vector<double>, 3> x; ///< points in the tree's order
   std::array<std::vector<double>, 6> sigma;
   std::vector<Translation> far, to_parent, to_child;
   int largest_offset = 3;
   std::vector<std::uint32_t> far_number; ///< translation by offset, a cube
   Expansions multipole, local;
-  std::vector<std::uint32_t> leaves;            ///< with points, in the order of their points
-  std::vector<std::size_t> share;               ///< first leaf of each rank
-  std::size_t first_leaf = 0, last_leaf = 0;    ///< of this rank
-  std::vector<std::uint8_t> wanted;             ///< boxes whose local expansion this rank needs
+  std::vector<std::uint32_t> leaves;         ///< with points, in the order of their points
+  std::vector<std::size_t> share;            ///< first leaf of each rank
+  std::size_t first_leaf = 0, last_leaf = 0; ///< of this rank
+  std::vector<std::uint8_t> wanted;          ///< boxes whose local expansion this rank needs
   PhaseTimes seconds;
 };
 } // namespace ddfem::fmm

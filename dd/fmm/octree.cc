@@ -159,8 +159,9 @@ void Octree::divide(const std::size_t index)
   const Vec3 middle = centre(box);
   const double longest = settings.longest_line * size(box) / 2;
   // Key 0: lines too long for the children, held here.
-  const auto lines = sort_by_key(line_at, box.lines_begin, box.lines_end, 9, [&](std::uint32_t i)
-                                 { return line_length[i] > longest ? 0 : 1 + octant(line_middle[i], middle); });
+  const auto lines =
+      sort_by_key(line_at, box.lines_begin, box.lines_end, 9,
+                  [&](std::uint32_t i) { return line_length[i] > longest ? 0 : 1 + octant(line_middle[i], middle); });
   const auto points = sort_by_key(point_at, box.points_begin, box.points_end, 8,
                                   [&](std::uint32_t i) { return octant(point[i], middle); });
   box.own_lines_end = lines[1];
@@ -216,8 +217,8 @@ void Octree::pair_children(const std::size_t box, const std::vector<Neighbour> &
         const std::uint32_t target = a.first_child + i;
         Neighbour link{b.first_child + j, {}, n.image};
         for (std::size_t c = 0; c < 3; ++c)
-          link.offset[c] = static_cast<std::int16_t>(2 * n.offset[c] + (all[link.box].place[c] & 1) -
-                                                     (all[target].place[c] & 1));
+          link.offset[c] =
+              static_cast<std::int16_t>(2 * n.offset[c] + (all[link.box].place[c] & 1) - (all[target].place[c] & 1));
         pair(target, link, neighbours);
       }
   }

@@ -24,9 +24,9 @@ struct Box
 {
   std::uint32_t parent = 0, first_child = 0;
   std::uint8_t n_children = 0, level = 0;
-  std::array<std::int32_t, 3> place{};                ///< integer coordinates in the grid of its level
-  std::uint32_t lines_begin = 0, lines_end = 0;       ///< of the box and its children
-  std::uint32_t own_lines_end = 0;                    ///< [lines_begin, own_lines_end) are held by this box itself
+  std::array<std::int32_t, 3> place{};          ///< integer coordinates in the grid of its level
+  std::uint32_t lines_begin = 0, lines_end = 0; ///< of the box and its children
+  std::uint32_t own_lines_end = 0;              ///< [lines_begin, own_lines_end) are held by this box itself
   std::uint32_t points_begin = 0, points_end = 0;
 
   std::size_t n_lines() const { return lines_end - lines_begin; }
@@ -118,8 +118,7 @@ private:
   std::vector<Vec3> shifts;
   double longest_of_all = 0; ///< line, nm
 };
-template <class Visit>
-void Octree::for_each_line_near(const Vec3 &x, const double radius, Visit &&visit) const
+template <class Visit> void Octree::for_each_line_near(const Vec3 &x, const double radius, Visit &&visit) const
 {
   for (std::size_t image = 0; image < shifts.size(); ++image)
     for (std::size_t root = 0; root < level_begin[1]; ++root)

@@ -2,6 +2,7 @@
 
 #include "dd/elasticity/gauss.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -12,8 +13,8 @@ namespace
 /// Factors of the recurrences, for all degrees up to max_order.
 struct Recurrence
 {
-  std::array<double, max_order + 1> diagonal{};                  ///< S_mm from S_m-1,m-1
-  std::array<double, n_harmonics(max_order)> first{}, second{};  ///< S_l from S_l-1 and S_l-2
+  std::array<double, max_order + 1> diagonal{};                 ///< S_mm from S_m-1,m-1
+  std::array<double, n_harmonics(max_order)> first{}, second{}; ///< S_l from S_l-1 and S_l-2
 
   Recurrence()
   {
@@ -110,8 +111,8 @@ std::array<std::vector<GradientTerm>, 3> gradient_terms(const int order)
 
 std::vector<double> rotation_about_y(const int order, const double cos_theta, const double sin_theta)
 {
-  // D_ij = (2l+1)/(4 pi) int C_i(R u) C_j(u) du over the sphere, by a product rule that is exact for polynomials of degree
-  // 2 order: simple, and stable at any order.
+  // D_ij = (2l+1)/(4 pi) int C_i(R u) C_j(u) du over the sphere, by a product rule that is exact to rounding for polynomials
+  // of degree 2 order: simple, and stable at any order. Two Gauss rules, of -1 < z < 0 and 0 < z < 1.
   std::vector<double> blocks;
   std::vector<std::size_t> begin;
   std::size_t size = 0;
@@ -121,13 +122,13 @@ std::vector<double> rotation_about_y(const int order, const double cos_theta, co
     size += static_cast<std::size_t>((l + 1) * (l + 1) + l * l);
   }
   blocks.assign(size, 0.0);
-  const GaussRule rule = gauss_rule(order + 1);
+  const GaussRule rule = gauss_rule(std::min(order + 1, max_gauss_points));
   const int n_phi = 2 * order + 1;
   RowBuffer harmonics(n_harmonics(order));
-  for (std::size_t k = 0; k < rule.points.size(); ++k)
+  for (std::size_t k = 0; k < 2 * rule.points.size(); ++k)
     for (int j = 0; j < n_phi; ++j)
     {
-      const double z = 2 * rule.points[k] - 1, rho = std::sqrt(1 - z * z);
+      const double z = (k % 2 == 0 ? 1 : -1) * rule.points[k / 2], rho = std::sqrt(1 - z * z);
       const double phi = 2 * std::numbers::pi * j / n_phi, x = rho * std::cos(phi), y = rho * std::sin(phi);
       // Lane 0 holds u, lane 1 holds R u.
       const Row points[3] = {Row{x, cos_theta * x - sin_theta * z}, Row{y, y}, Row{z, sin_theta * x + cos_theta * z}};
@@ -135,7 +136,7 @@ std::vector<double> rotation_about_y(const int order, const double cos_theta, co
       for (int l = 0; l <= order; ++l)
       {
         double *entry = &blocks[begin[static_cast<std::size_t>(l)]];
-        const double weight = (2 * l + 1) * rule.weights[k] / n_phi;
+        const double weight = 0.5 * (2 * l + 1) * rule.weights[k / 2] / n_phi;
         for (int row = 0; row <= l; ++row)
           for (int column = 0; column <= l; ++column)
             *entry++ += weight * harmonics(harmonic_index(l, row), 1) * harmonics(harmonic_index(l, column), 0);

@@ -16,8 +16,8 @@
 
 namespace ddfem::fmm
 {
-/// Highest degree of the expansions (limited by the Gauss rules that build the rotations).
-inline constexpr int max_order = 30;
+/// Highest degree of the expansions; enough for errors of 1e-8.
+inline constexpr int max_order = 34;
 
 /// Number of harmonics of degree 0 to @p order.
 constexpr std::size_t n_harmonics(int order)

@@ -19,8 +19,8 @@ constexpr int component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 struct LineBlock
 {
   alignas(row_size) Row middle[3] = {};
-  Row half[3] = {};                 ///< (x' - centre)/size = middle + z half, -1 <= z <= 1
-  Row strength[row_width] = {};     ///< of the eight fields, one row per line
+  Row half[3] = {};             ///< (x' - centre)/size = middle + z half, -1 <= z <= 1
+  Row strength[row_width] = {}; ///< of the eight fields, one row per line
   Row q = {};
   double longest = 0; ///< length over box size
 
@@ -130,8 +130,8 @@ void add_first_derivatives(const double m, const double factor, const Row (&g)[3
   const double div = P(0, 0) + P(1, 1) + P(2, 2);
   for (int a = 0; a < 3; ++a)
     for (int b = a; b < 3; ++b)
-      stress[component[a][b]] += factor * (curl(a, b) + curl(b, a) + (m - 0.5) * (P(a, b) + P(b, a)) +
-                                           (a == b ? (1 - 2 * m) * div : 0.0));
+      stress[component[a][b]] +=
+          factor * (curl(a, b) + curl(b, a) + (m - 0.5) * (P(a, b) + P(b, a)) + (a == b ? (1 - 2 * m) * div : 0.0));
 }
 
 /// Eight points at once. @p coefficients: 24 numbers per harmonic; @p y: (x - centre)/size; @p stress: six rows.

@@ -61,17 +61,17 @@ double axial_element(const Shift kind, const int m, const int to, const int from
 {
   switch (kind)
   {
-  case Shift::far:
-    return ((m + to) % 2 == 0 ? 1.0 : -1.0) * factorial(to + from) / (norm(to, m) * norm(from, m)) *
-           std::pow(d, -(to + from + 1));
-  case Shift::child_to_parent:
-    return from > to ? 0.0
-                     : norm(to, m) / (norm(from, m) * factorial(to - from)) * std::pow(d, to - from) *
-                           std::pow(0.5, from);
-  case Shift::parent_to_child:
-    return from < to ? 0.0
-                     : norm(from, m) / (norm(to, m) * factorial(from - to)) * std::pow(d, from - to) *
-                           std::pow(0.5, to + 1);
+    case Shift::far:
+      return ((m + to) % 2 == 0 ? 1.0 : -1.0) * factorial(to + from) / (norm(to, m) * norm(from, m)) *
+             std::pow(d, -(to + from + 1));
+    case Shift::child_to_parent:
+      return from > to
+                 ? 0.0
+                 : norm(to, m) / (norm(from, m) * factorial(to - from)) * std::pow(d, to - from) * std::pow(0.5, from);
+    case Shift::parent_to_child:
+      return from < to ? 0.0
+                       : norm(from, m) / (norm(to, m) * factorial(from - to)) * std::pow(d, from - to) *
+                             std::pow(0.5, to + 1);
   }
   return 0.0;
 }
@@ -108,8 +108,8 @@ constexpr std::size_t rows_at_once = 4;
 
 /// out[i] = sum_j matrix[i][j] in[j] for @p n_rows rows; row positions by @p place_in and @p place_out.
 template <std::size_t n_rows, class PlaceIn, class PlaceOut>
-DDFEM_FMM_INLINE void multiply_rows(const double *matrix, const std::size_t n, const Row *in, PlaceIn place_in, Row *out,
-                                    PlaceOut place_out, const std::size_t first)
+DDFEM_FMM_INLINE void multiply_rows(const double *matrix, const std::size_t n, const Row *in, PlaceIn place_in,
+                                    Row *out, PlaceOut place_out, const std::size_t first)
 {
   Row sum[n_rows] = {};
   for (std::size_t j = 0; j < n; ++j)
@@ -172,8 +172,8 @@ DDFEM_FMM_INLINE void add_turned_back(const int order, const double *phase, cons
 }
 
 DDFEM_FMM_EVERY_PROCESSOR
-void translate(const int order, const double *phase, const double *rotation, const double *axial, const double *backward,
-               const std::uint16_t *axial_place, const Row *source, Row *target)
+void translate(const int order, const double *phase, const double *rotation, const double *axial,
+               const double *backward, const std::uint16_t *axial_place, const Row *source, Row *target)
 {
   alignas(row_size) Row a[n_harmonics(max_order)];
   alignas(row_size) Row b[n_harmonics(max_order)];
@@ -236,6 +236,7 @@ Translation::Translation(const Shift kind, const int order, const Vec3 &vector) 
 
 void Translation::add(const Row *source, Row *target) const
 {
-  translate(order_, phase.data(), rotation->data(), axial.data(), backward->data(), axial_order(order_), source, target);
+  translate(order_, phase.data(), rotation->data(), axial.data(), backward->data(), axial_order(order_), source,
+            target);
 }
 } // namespace ddfem::fmm

@@ -24,11 +24,11 @@ enum class SummationMethod : std::uint8_t
 struct SummationSettings
 {
   SummationMethod method = SummationMethod::automatic;
-  /// Error of the far stress relative to its rms, 1e-9 to 0.1 (of the total stress: about a fifth of it); the error of
+  /// Error of the far stress relative to its rms, 1e-8 to 0.1 (of the total stress: about a fifth of it); the error of
   /// quadrature along the lines is kept below it.
   double tolerance = 1e-3;
-  /// Where both methods take the same time.
-  std::size_t multipole_from = 1000;
+  /// Above the size at which both methods take the same time.
+  std::size_t multipole_from = 2000;
 
   bool use_multipoles(std::size_t n_lines) const
   {

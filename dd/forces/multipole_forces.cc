@@ -11,7 +11,9 @@ namespace ddfem
 namespace
 {
 /// Sources nearer than this many half lengths of a panel are replaced, approximately; the number of Gauss points follows.
-constexpr double typical_near_distance = 2.7;
+constexpr double typical_near_distance = 4.5;
+/// The error of quadrature is relative to the sources near the panel, which are some five times the far field.
+constexpr double near_to_far = 5;
 
 double bernstein_radius(const double distance)
 {
@@ -20,8 +22,8 @@ double bernstein_radius(const double distance)
 
 int n_points_for(const double tolerance)
 {
-  return std::max(1, static_cast<int>(std::ceil(-0.5 * std::log(tolerance) /
-                                                std::log(bernstein_radius(typical_near_distance)) - 0.05)));
+  return std::max(1, static_cast<int>(std::ceil(
+                         -0.5 * std::log(tolerance) / std::log(bernstein_radius(typical_near_distance)) - 0.05)));
 }
 
 /// Distance, in half lengths, from which @p n points reach the tolerance.
@@ -41,8 +43,8 @@ SegmentForces &operator+=(SegmentForces &f, const SegmentForces &g)
 
 MultipoleForces::MultipoleForces(const LineSystem &system_, const double tolerance, const double pair_tolerance_,
                                  MPI_Comm comm)
-    : system(system_), pair_tolerance(pair_tolerance_), n_gauss(n_points_for(tolerance)),
-      near_distance(near_distance_for(tolerance, n_gauss))
+    : system(system_), pair_tolerance(pair_tolerance_), n_gauss(n_points_for(tolerance / near_to_far)),
+      near_distance(near_distance_for(tolerance / near_to_far, n_gauss))
 {
   for (const StraightLine &l : system.lines())
     longest_panel += 2 * (l.end - l.start).norm() / static_cast<double>(system.lines().size());
