@@ -1,6 +1,6 @@
 // Nodal forces of a random network by the fast multipole method: time of the phases, and the error on sampled segments.
 //
-//   far_field TOLERANCE PAIR_TOLERANCE N_SAMPLES N_SEGMENTS...
+//   far_field TOLERANCE PAIR_TOLERANCE COST_FACTOR N_SAMPLES N_SEGMENTS...
 #include "dd/elasticity/gauss.h"
 #include "dd/forces/multipole_field.h"
 
@@ -72,7 +72,7 @@ double far_force(const LineSystem &system, const double tolerance)
   std::vector<Vec3> middles;
   for (const StraightLine &l : system.lines())
     middles.emplace_back(0.5 * (l.start + l.end));
-  MultipoleField field(system, middles, tolerance);
+  MultipoleField field(system, middles, {tolerance});
   const auto far = field.sum().stress(MPI_COMM_SELF, fmm::MultipoleStress::Part::far);
   double sum = 0;
   for (std::size_t i = 0; i < far.size(); ++i)
@@ -104,12 +104,13 @@ void print_errors(const LineSystem &system, const MultipoleForces &forces, const
               std::sqrt(largest) / rms);
 }
 
-void measure(const std::size_t n, const double tolerance, const double pair_tolerance, const std::size_t n_samples)
+void measure(const std::size_t n, const double tolerance, const double pair_tolerance, const double factor,
+             const std::size_t n_samples)
 {
   const Network network = random_loops(n);
   const LineSystem system(medium, network, nullptr, RayDirection::normal, nullptr, nullptr);
   const double start = seconds();
-  const MultipoleForces forces(system, tolerance, pair_tolerance, MPI_COMM_SELF);
+  const MultipoleForces forces(system, {tolerance, 0, factor}, pair_tolerance, MPI_COMM_SELF);
   const double middle = seconds();
   std::vector<SegmentForces> result(system.lines().size());
 #pragma omp parallel for schedule(dynamic, 64)
@@ -132,13 +133,13 @@ void measure(const std::size_t n, const double tolerance, const double pair_tole
 
 int main(int argc, char **argv)
 {
-  if (argc < 5)
+  if (argc < 6)
   {
-    std::fprintf(stderr, "usage: %s TOLERANCE PAIR_TOLERANCE N_SAMPLES N_SEGMENTS...\n", argv[0]);
+    std::fprintf(stderr, "usage: %s TOLERANCE PAIR_TOLERANCE COST_FACTOR N_SAMPLES N_SEGMENTS...\n", argv[0]);
     return 2;
   }
-  for (int k = 4; k < argc; ++k)
-    measure(std::strtoul(argv[k], nullptr, 10), std::atof(argv[1]), std::atof(argv[2]),
-            std::strtoul(argv[3], nullptr, 10));
+  for (int k = 5; k < argc; ++k)
+    measure(std::strtoul(argv[k], nullptr, 10), std::atof(argv[1]), std::atof(argv[2]), std::atof(argv[3]),
+            std::strtoul(argv[4], nullptr, 10));
   return 0;
 }

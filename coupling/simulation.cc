@@ -273,7 +273,7 @@ std::vector<SymTensor> Simulation::infinite_stress(const std::vector<Vec3> &poin
   const LineSystem lines = line_system();
   const SummationSettings &summation = parameters.summation;
   return summation.use_multipoles(lines.lines().size())
-             ? MultipoleField(lines, points, summation.tolerance).stress(communicator)
+             ? MultipoleField(lines, points, {summation.tolerance}).stress(communicator)
              : lines.stress(points);
 }
 

@@ -32,7 +32,8 @@ TreeSettings tree_settings(const IsotropicMedium &medium, const MultipoleSetting
 {
   TreeSettings s;
   for (int distance2 = 0; distance2 <= 27; ++distance2)
-    s.translation_cost.push_back(translation_cost(order_at_distance(order, std::sqrt(distance2))));
+    s.translation_cost.push_back(settings.translation_cost_factor *
+                                 translation_cost(order_at_distance(order, std::sqrt(distance2))));
   // The first term of the core that is left out is of relative order (a/d)^4, at distances d of 2 boxes and more.
   s.smallest_box = medium.a / 2 / std::pow(settings.tolerance, 0.25);
   return s;

@@ -39,6 +39,8 @@ struct MultipoleSettings
   double tolerance = 1e-3;
   /// Order of the expansions; 0: from the tolerance.
   int order = 0;
+  /// Factor to the assumed cost of a translation: smaller for a deeper tree.
+  double translation_cost_factor = 1.0;
 };
 
 /// Level of the boxes that get the field of distant rays as one local expansion: all points lie in eight of them, at the centre

@@ -19,7 +19,8 @@ double mean_length(const std::vector<StraightLine> &lines)
 }
 } // namespace
 
-MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const Vec3> points_, const double tolerance)
+MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const Vec3> points_,
+                               const fmm::MultipoleSettings &settings)
     : system(system_), points(points_.begin(), points_.end())
 {
   std::vector<LineSource> lines;
@@ -35,8 +36,7 @@ MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const 
   const fmm::RootGrid grid =
       cell ? fmm::periodic_grid(cell->origin, cell->lengths) : fmm::enclosing_grid(lines, rays, points);
   const auto distant = fmm::cut_rays(rays, grid, mean_length(system.lines()), lines);
-  expansions = std::make_unique<fmm::MultipoleStress>(system.medium(), fmm::MultipoleSettings{tolerance}, grid, lines,
-                                                      distant, points);
+  expansions = std::make_unique<fmm::MultipoleStress>(system.medium(), settings, grid, lines, distant, points);
 }
 
 std::vector<SymTensor> MultipoleField::stress(MPI_Comm comm)

@@ -41,7 +41,7 @@ class MultipoleField
 {
 public:
   /// @throws std::invalid_argument for a tolerance outside its range.
-  MultipoleField(const LineSystem &system, std::span<const Vec3> points, double tolerance);
+  MultipoleField(const LineSystem &system, std::span<const Vec3> points, const fmm::MultipoleSettings &settings);
 
   /// As LineSystem::stress(): infinite-body stress at the points, MPa, periodic images included. Collective; all ranks get
   /// all values, which do not depend on the number of ranks and threads.
@@ -67,7 +67,8 @@ class MultipoleForces
 {
 public:
   /// Computes the stress at all Gauss points. Collective. @p pair_tolerance: of the forces in closed form.
-  MultipoleForces(const LineSystem &system, double tolerance, double pair_tolerance, MPI_Comm comm);
+  MultipoleForces(const LineSystem &system, const fmm::MultipoleSettings &settings, double pair_tolerance,
+                  MPI_Comm comm);
 
   /// Forces on line number @p i of the system, without its own (self_force.h), MPa nm^2. Safe to call from any thread.
   SegmentForces operator()(std::size_t i) const;

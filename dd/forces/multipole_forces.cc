@@ -41,10 +41,10 @@ SegmentForces &operator+=(SegmentForces &f, const SegmentForces &g)
 }
 } // namespace
 
-MultipoleForces::MultipoleForces(const LineSystem &system_, const double tolerance, const double pair_tolerance_,
-                                 MPI_Comm comm)
-    : system(system_), pair_tolerance(pair_tolerance_), n_gauss(n_points_for(tolerance / near_to_far)),
-      near_distance(near_distance_for(tolerance / near_to_far, n_gauss))
+MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::MultipoleSettings &settings,
+                                 const double pair_tolerance_, MPI_Comm comm)
+    : system(system_), pair_tolerance(pair_tolerance_), n_gauss(n_points_for(settings.tolerance / near_to_far)),
+      near_distance(near_distance_for(settings.tolerance / near_to_far, n_gauss))
 {
   for (const StraightLine &l : system.lines())
     longest_panel += 2 * (l.end - l.start).norm() / static_cast<double>(system.lines().size());
@@ -58,7 +58,7 @@ MultipoleForces::MultipoleForces(const LineSystem &system_, const double toleran
       for (const double z : rule.points)
         points.emplace_back(line.start + (p.begin + z * (p.end - p.begin)) * (line.end - line.start));
   }
-  multipoles = std::make_unique<MultipoleField>(system, points, tolerance);
+  multipoles = std::make_unique<MultipoleField>(system, points, settings);
   stress = multipoles->stress(comm);
 }
 

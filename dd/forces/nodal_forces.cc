@@ -128,7 +128,7 @@ NodalForces compute_nodal_forces(const Network &network, const ForceSettings &se
                           environment.images);
   std::optional<MultipoleForces> multipoles;
   if (settings.summation.use_multipoles(system.lines().size()))
-    multipoles.emplace(system, settings.summation.tolerance, settings.pair_tolerance, comm);
+    multipoles.emplace(system, fmm::MultipoleSettings{settings.summation.tolerance}, settings.pair_tolerance, comm);
   std::vector<Contributions> by_line(system.lines().size());
   const IndexRange owned = owned_range(by_line.size(), comm);
 #pragma omp parallel for schedule(dynamic, 4)

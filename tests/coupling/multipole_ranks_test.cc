@@ -22,7 +22,7 @@ TEST(MultipoleRanks, ForcesAndStressesAreTheSameBitsOnAnyNumberOfRanks)
   test::RandomVectors random(1);
   for (int k = 0; k < 1000; ++k)
     points.push_back(500 * random.vector());
-  const auto field = [&](MPI_Comm comm) { return MultipoleField(system, points, 1e-3).stress(comm); };
+  const auto field = [&](MPI_Comm comm) { return MultipoleField(system, points, {1e-3}).stress(comm); };
   EXPECT_TRUE(field(MPI_COMM_SELF) == field(MPI_COMM_WORLD));
 }
 
@@ -31,7 +31,7 @@ TEST(MultipoleRanks, MorePartsThanLeavesAreEmpty)
   const test::LinesOfTest lines = test::random_loops(1);
   const LineSystem system = lines.system();
   const std::vector<Vec3> points{Vec3(1, 2, 3)};
-  const auto value = MultipoleField(system, points, 1e-3).stress(MPI_COMM_WORLD);
+  const auto value = MultipoleField(system, points, {1e-3}).stress(MPI_COMM_WORLD);
   EXPECT_LT((value[0] - system.stress(points[0])).norm(), 1e-12 * value[0].norm());
 }
 } // namespace
