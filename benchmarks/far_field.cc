@@ -4,12 +4,14 @@
 #include "dd/elasticity/gauss.h"
 #include "dd/forces/multipole_field.h"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
 #include <random>
+#include <sys/resource.h>
 
 namespace
 {
@@ -104,6 +106,23 @@ void print_errors(const LineSystem &system, const MultipoleForces &forces, const
               std::sqrt(largest) / rms);
 }
 
+/// Evaluations of a segment at a point, and translations between boxes.
+std::array<double, 2> counts(const fmm::Octree &tree)
+{
+  double pairs = 0, translations = 0;
+  for (std::size_t i = 0; i < tree.boxes().size(); ++i)
+  {
+    translations += static_cast<double>(tree.far_links(i).size());
+    for (const fmm::NearLink &l : tree.near_links(i))
+    {
+      const fmm::Box &b = tree.boxes()[l.box];
+      const std::size_t n_lines = (l.own_only ? b.own_lines_end : b.lines_end) - b.lines_begin;
+      pairs += static_cast<double>(n_lines * tree.boxes()[i].n_points());
+    }
+  }
+  return {pairs, translations};
+}
+
 void measure(const std::size_t n, const double tolerance, const double pair_tolerance, const double factor,
              const std::size_t n_samples)
 {
@@ -126,6 +145,13 @@ void measure(const std::size_t n, const double tolerance, const double pair_tole
       n, sum.order(), sum.octree().boxes().size(), sum.octree().levels().size() - 1, middle - start - phases, t.upward,
       t.translations, t.downward, t.points, t.near, end - middle, end - start,
       1e6 * (end - start) / static_cast<double>(n));
+  const auto [pairs, translations] = counts(sum.octree());
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf("  %.1f ns per near pair (%.0f M), %.2f us per translation (%.0f k); largest memory so far %.0f bytes "
+              "per segment\n",
+              1e9 * t.near / pairs, 1e-6 * pairs, 1e6 * t.translations / translations, 1e-3 * translations,
+              1024.0 * static_cast<double>(usage.ru_maxrss) / static_cast<double>(n));
   if (n_samples > 0)
     print_errors(system, forces, tolerance, n_samples);
 }

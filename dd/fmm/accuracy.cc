@@ -19,8 +19,10 @@ int expansion_order(const double tolerance)
 {
   if (!(tolerance >= 1e-8 && tolerance <= 0.1))
     throw std::invalid_argument("requested error of the far field outside [1e-8, 0.1]");
-  // Measured on the networks of the tests: about 0.6 exp(-0.59 order), for orders 8 to 32.
-  return std::clamp(static_cast<int>(std::ceil(-std::log(tolerance) / 0.59)), 3, max_order);
+  // Measured on the networks of the tests: errors of 7e-3, 5e-4, 3e-5, 8e-7 and 9e-9 at orders 8, 11, 16, 24 and 32. Each
+  // order gains a factor of 2.1 at first, of 1.75 above.
+  const double beyond = std::log(1e-3 / tolerance);
+  return std::clamp(static_cast<int>(std::ceil(11 + std::max(1.35 * beyond, 1.78 * beyond))), 3, max_order);
 }
 
 int order_at_distance(const int order, const double distance)

@@ -67,6 +67,8 @@ Octree::Octree(const RootGrid &grid_, const std::span<const LineSource> lines, c
     neighbours = std::move(next);
   }
   level_begin.pop_back(); // the last level is empty
+  for (const std::uint32_t i : line_at)
+    spheres.push_back({line_middle[i][0], line_middle[i][1], line_middle[i][2], 0.5 * line_length[i]});
 }
 
 void Octree::sort_into_roots(const std::span<const LineSource> lines, const std::span<const Vec3> points)

@@ -83,7 +83,7 @@ public:
   const std::vector<Vec3> &image_shifts() const { return shifts; }
 
   /// Calls visit(position in the tree's order, image) for every line whose middle is nearer to @p x than @p radius plus half its
-  /// length, in a fixed order; a few others may be among them.
+  /// length, in a fixed order.
   template <class Visit> void for_each_line_near(const Vec3 &x, double radius, Visit &&visit) const;
 
 private:
@@ -116,6 +116,12 @@ private:
   std::vector<Vec3> line_middle, point; ///< as given
   std::vector<double> line_length;      ///< as given
   std::vector<Vec3> shifts;
+  /// Around each line, in the tree's order, nm.
+  struct LineSphere
+  {
+    double x, y, z, radius;
+  };
+  std::vector<LineSphere> spheres;
   double longest_of_all = 0; ///< line, nm
 };
 template <class Visit> void Octree::for_each_line_near(const Vec3 &x, const double radius, Visit &&visit) const
@@ -136,7 +142,12 @@ void Octree::visit_lines(const Box &box, const Vec3 &x, const double radius, con
   if (box.n_lines() == 0 || outside.squaredNorm() > reach * reach)
     return;
   for (std::uint32_t k = box.lines_begin; k < box.own_lines_end; ++k)
-    visit(k, image);
+  {
+    const LineSphere &s = spheres[k];
+    const double dx = x[0] - s.x, dy = x[1] - s.y, dz = x[2] - s.z, sum = radius + s.radius;
+    if (dx * dx + dy * dy + dz * dz < sum * sum)
+      visit(k, image);
+  }
   for (std::uint32_t i = 0; i < box.n_children; ++i)
     visit_lines(all[box.first_child + i], x, radius, image, visit);
 }

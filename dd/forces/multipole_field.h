@@ -86,8 +86,9 @@ private:
   std::vector<Panel> panels_of(std::size_t i) const;
   SegmentForces panel_force(std::size_t i, const Panel &panel, std::size_t first_point) const;
   void replace_near(std::size_t i, const Panel &panel, SegmentForces &force) const;
+  std::vector<fmm::LineSource> near_sources(std::size_t i, const Vec3 &start, const Vec3 &end) const;
   template <class Stress>
-  SegmentForces quadrature(const StraightLine &line, const Panel &panel, const Vec3 &shift, Stress &&stress) const;
+  SegmentForces quadrature(const StraightLine &line, const Panel &panel, Stress &&stress_at) const;
 
   const LineSystem &system;
   double pair_tolerance;

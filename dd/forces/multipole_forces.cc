@@ -72,9 +72,9 @@ std::vector<MultipoleForces::Panel> MultipoleForces::panels_of(const std::size_t
   return panels;
 }
 
+/// Peach-Koehler forces of the stress at the Gauss points of a panel on the ends of its line.
 template <class Stress>
-SegmentForces MultipoleForces::quadrature(const StraightLine &line, const Panel &panel, const Vec3 &shift,
-                                          Stress &&stress_at) const
+SegmentForces MultipoleForces::quadrature(const StraightLine &line, const Panel &panel, Stress &&stress_at) const
 {
   const Vec3 t = line.end - line.start;
   const GaussRule rule = gauss_rule(n_gauss);
@@ -82,8 +82,7 @@ SegmentForces MultipoleForces::quadrature(const StraightLine &line, const Panel 
   for (std::size_t q = 0; q < rule.points.size(); ++q)
   {
     const double s = panel.begin + rule.points[q] * (panel.end - panel.begin);
-    const SymTensor sigma = stress_at(q, Vec3(line.start + shift + s * t));
-    const Vec3 df = rule.weights[q] * (panel.end - panel.begin) * contract(sigma, line.burgers).cross(t);
+    const Vec3 df = rule.weights[q] * (panel.end - panel.begin) * contract(stress_at(q), line.burgers).cross(t);
     f.start += (1 - s) * df;
     f.end += s * df;
   }
@@ -106,44 +105,61 @@ SegmentForces MultipoleForces::panel_force(const std::size_t i, const Panel &pan
 {
   const StraightLine &line = system.lines()[i];
   const SegmentStressField own(system.medium(), line.start, line.end, line.burgers);
-  SegmentForces force = quadrature(line, panel, Vec3::Zero(),
-                                   [&](std::size_t q, const Vec3 &x) { return SymTensor(stress[first + q] - own(x)); });
+  const GaussRule rule = gauss_rule(n_gauss);
+  const auto of_others = [&](std::size_t q)
+  {
+    const double s = panel.begin + rule.points[q] * (panel.end - panel.begin);
+    return SymTensor(stress[first + q] - own(line.start + s * (line.end - line.start)));
+  };
+  SegmentForces force = quadrature(line, panel, of_others);
   replace_near(i, panel, force);
   return force;
+}
+
+std::vector<fmm::LineSource> MultipoleForces::near_sources(const std::size_t i, const Vec3 &start,
+                                                           const Vec3 &end) const
+{
+  const fmm::Octree &tree = multipoles->sum().octree();
+  const Vec3 middle = 0.5 * (start + end);
+  const double half = 0.5 * (end - start).norm(), reach = near_distance * half;
+  std::vector<fmm::LineSource> near;
+  tree.for_each_line_near(middle, reach + half,
+                          [&](const std::uint32_t k, const std::size_t image)
+                          {
+                            fmm::LineSource source = multipoles->sum().lines()[k];
+                            source.start += tree.image_shifts()[image];
+                            source.end += tree.image_shifts()[image];
+                            // Of the images of the line itself, the one that the panel lies on.
+                            if (tree.line_order()[k] == i &&
+                                distance_point_segment(middle, source.start, source.end).squared < 1e-12 * half * half)
+                              return;
+                            if (distance_segment_segment(source.start, source.end, start, end).squared < reach * reach)
+                              near.push_back(source);
+                          });
+  return near;
 }
 
 void MultipoleForces::replace_near(const std::size_t i, const Panel &panel, SegmentForces &force) const
 {
   const StraightLine &line = system.lines()[i];
-  const Vec3 t = line.end - line.start;
-  const double half = 0.5 * (panel.end - panel.begin) * t.norm();
-  Vec3 middle = line.start + 0.5 * (panel.begin + panel.end) * t;
+  const Vec3 t = line.end - line.start, middle = line.start + 0.5 * (panel.begin + panel.end) * t;
   const Vec3 shift = system.cell() ? system.cell()->shift_into_cell(middle) : Vec3(Vec3::Zero());
-  middle += shift;
   const Vec3 start = line.start + shift + panel.begin * t, end = line.start + shift + panel.end * t;
-  const fmm::Octree &tree = multipoles->sum().octree();
-  tree.for_each_line_near(
-      middle, (near_distance + 1) * half,
-      [&](const std::uint32_t k, const std::size_t image)
-      {
-        const fmm::LineSource &source = multipoles->sum().lines()[k];
-        const Vec3 x1 = source.start + tree.image_shifts()[image], x2 = source.end + tree.image_shifts()[image];
-        const double reach = (near_distance + 1) * half + 0.5 * (x2 - x1).norm();
-        if ((0.5 * (x1 + x2) - middle).squaredNorm() > reach * reach ||
-            distance_segment_segment(x1, x2, start, end).squared > std::pow(near_distance * half, 2))
-          return;
-        // In a periodic cell the line itself is the image that the shift of the panel leads to.
-        const bool is_itself = tree.line_order()[k] == i && (x1 - line.start - shift).norm() < 1e-6 * half;
-        if (is_itself)
-          return;
-        const SegmentStressField field(system.medium(), x1, x2, source.burgers);
-        const SegmentForces wrong =
-            quadrature(line, panel, shift, [&](std::size_t, const Vec3 &x) { return field(x); });
-        const SegmentForces exact =
-            segment_force(system.medium(), x1, x2, source.burgers, start, end, line.burgers, pair_tolerance);
-        // Linear shape functions of the panel's ends, in those of the line's.
-        force.start += (1 - panel.begin) * exact.start + (1 - panel.end) * exact.end - wrong.start;
-        force.end += panel.begin * exact.start + panel.end * exact.end - wrong.end;
-      });
+  // What the sources have added at the Gauss points, and what they should have added.
+  std::vector<SymTensor> added(static_cast<std::size_t>(n_gauss), SymTensor::Zero());
+  SegmentForces exact;
+  const GaussRule rule = gauss_rule(n_gauss);
+  for (const fmm::LineSource &source : near_sources(i, start, end))
+  {
+    const SegmentStressField field(system.medium(), source.start, source.end, source.burgers);
+    for (std::size_t q = 0; q < added.size(); ++q)
+      added[q] += field(start + rule.points[q] * (end - start));
+    exact += segment_force(system.medium(), source.start, source.end, source.burgers, start, end, line.burgers,
+                           pair_tolerance);
+  }
+  const SegmentForces wrong = quadrature(line, panel, [&](std::size_t q) -> const SymTensor & { return added[q]; });
+  // Linear shape functions of the panel's ends, in those of the line's.
+  force.start += (1 - panel.begin) * exact.start + (1 - panel.end) * exact.end - wrong.start;
+  force.end += panel.begin * exact.start + panel.end * exact.end - wrong.end;
 }
 } // namespace ddfem
