@@ -6,27 +6,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace ddfem::coupling
 {
 DislocationTractions::DislocationTractions(const LineSystem &system, const SurfaceImages *surface_images)
-    : line_system(system), images(surface_images), ray_list(system.rays())
+    : line_system(system), images(surface_images), ray_list(system.rays()), rays(system.ray_table())
 {
-  const IsotropicMedium &medium = system.medium();
-  lines.reserve(system.lines().size());
-  for (const StraightLine &l : system.lines())
-    lines.emplace_back(medium, l.start, l.end, l.burgers);
   if (images)
     for (const auto &leg : images->remaining_legs())
+    {
       ray_list.push_back(leg.ray);
-  rays.reserve(ray_list.size());
-  for (const VirtualRay &r : ray_list)
-    rays.emplace_back(medium, r.origin, r.direction, r.burgers);
+      rays.add_ray(leg.ray.origin, leg.ray.direction, leg.ray.burgers);
+    }
 }
 
 unsigned DislocationTractions::n_sources() const
 {
-  return static_cast<unsigned>(lines.size() + rays.size() + (images ? images->n_images() : 0));
+  return static_cast<unsigned>(n_lines() + rays.size() + (images ? images->n_images() : 0));
 }
 
 bool DislocationTractions::vanishes_on(const unsigned source, const dealii::types::boundary_id boundary) const
@@ -34,11 +31,11 @@ bool DislocationTractions::vanishes_on(const unsigned source, const dealii::type
   if (!images)
     return false;
   const int face = static_cast<int>(boundary);
-  if (source < lines.size())
+  if (source < n_lines())
     return images->is_freed_of_line(source, face);
   if (is_image(source))
     return images->face_of_image(image_number(source)) == face;
-  const std::size_t ray = source - lines.size(), n_rays = line_system.rays().size();
+  const std::size_t ray = source - n_lines(), n_rays = line_system.rays().size();
   return ray < n_rays ? images->is_freed_of_ray(ray, face) : images->remaining_legs()[ray - n_rays].face_id != face;
 }
 
@@ -46,9 +43,9 @@ double DislocationTractions::distance(const unsigned source, const Vec3 &x) cons
 {
   if (is_image(source))
     return images->image_distance(image_number(source), x);
-  if (source >= lines.size())
+  if (source >= n_lines())
   {
-    const VirtualRay &r = ray_list[source - lines.size()];
+    const VirtualRay &r = ray_list[source - n_lines()];
     return std::sqrt(distance_point_ray(x, r.origin, r.direction).squared);
   }
   const StraightLine &l = line_system.lines()[source];
@@ -68,34 +65,30 @@ void DislocationTractions::add_stress(const std::span<const unsigned> sources,
                                       const std::span<const dealii::Point<3>> points,
                                       const std::span<dealii::SymmetricTensor<2, 3>> values) const
 {
-  // The last point is repeated up to whole vectors of the widest kind: the rest of a loop costs more than full vectors.
-  constexpr std::size_t width = 8;
-  const std::size_t n = (points.size() + width - 1) / width * width;
-  std::vector<double> numbers(9 * n, 0.0); // coordinates and stresses, component by component
-  for (std::size_t i = 0; i < n; ++i)
-    for (unsigned c = 0; c < 3; ++c)
-      numbers[c * n + i] = points[std::min(i, points.size() - 1)][c];
-  StressBatch batch{n, {}, {}};
-  for (std::size_t c = 0; c < 3; ++c)
-    batch.x[c] = &numbers[c * n];
-  for (std::size_t c = 0; c < 6; ++c)
-    batch.sigma[c] = &numbers[(3 + c) * n];
-  std::vector<std::size_t> image_sources;
+  StressBuffer buffer(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    buffer.set_point(i, points[i]);
+  std::vector<unsigned> of_lines, of_rays;
+  std::vector<std::size_t> of_images;
   for (const unsigned source : sources)
     if (is_image(source))
-      image_sources.push_back(image_number(source));
-    else if (source < lines.size())
-      lines[source].add(batch);
+      of_images.push_back(image_number(source));
+    else if (source < n_lines())
+      of_lines.push_back(source);
     else
-      rays[source - lines.size()].add(batch);
-  SymTensor sum;
+      of_rays.push_back(source - static_cast<unsigned>(n_lines()));
+  add_segment_stress(line_system.medium(), line_system.segment_table(), of_lines, buffer.batch());
+  add_ray_stress(line_system.medium(), rays, of_rays, buffer.batch());
+  std::vector<SymTensor> sums;
   for (std::size_t i = 0; i < points.size(); ++i)
+    sums.push_back(buffer.stress(i));
+  if (!of_images.empty())
   {
-    for (Eigen::Index c = 0; c < 6; ++c)
-      sum[c] = batch.sigma[c][i];
-    if (!image_sources.empty())
-      sum += images->stress(image_sources, to_vec3(points[i]));
-    values[i] += to_symmetric_tensor(sum);
+    std::vector<Vec3> positions;
+    std::transform(points.begin(), points.end(), std::back_inserter(positions), to_vec3);
+    images->add_stress(of_images, positions, sums);
   }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    values[i] += to_symmetric_tensor(sums[i]);
 }
 } // namespace ddfem::coupling

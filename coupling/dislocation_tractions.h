@@ -1,7 +1,7 @@
 // The infinite-body stress of the dislocations as the load of the correction problem.
 #pragma once
 
-#include "dd/elasticity/segment_stress.h"
+#include "dd/elasticity/vectorised/stress_kernels.h"
 #include "dd/forces/line_system.h"
 #include "dd/forces/surface_images.h"
 #include "fem/traction_field.h"
@@ -28,15 +28,15 @@ public:
   bool vanishes_on(unsigned source, dealii::types::boundary_id boundary) const override;
 
 private:
+  std::size_t n_lines() const { return line_system.lines().size(); }
   double distance(unsigned source, const Vec3 &x) const;
   /// Number of the image that a source is; beyond n_images() for others.
-  std::size_t image_number(unsigned source) const { return source - lines.size() - rays.size(); }
-  bool is_image(unsigned source) const { return source >= lines.size() + rays.size(); }
+  std::size_t image_number(unsigned source) const { return source - n_lines() - rays.size(); }
+  bool is_image(unsigned source) const { return source >= n_lines() + rays.size(); }
 
   const LineSystem &line_system;
   const SurfaceImages *images;
   std::vector<VirtualRay> ray_list; ///< rays of the lines, then legs
-  std::vector<SegmentStressField> lines;
-  std::vector<RayStressField> rays;
+  LineTable rays;                   ///< the same
 };
 } // namespace ddfem::coupling

@@ -6,7 +6,7 @@
 #include "coupling/image_planes.h"
 #include "coupling/input_error.h"
 #include "dd/common/parallel.h"
-#include "dd/elasticity/triangle_displacement.h"
+#include "dd/elasticity/vectorised/displacement_kernels.h"
 #include "dd/topology/growth.h"
 #include "fem/face_section.h"
 
@@ -250,17 +250,13 @@ void FiniteGrain::relax(const LineSystem &lines)
 
 void FiniteGrain::add_swept(const SweptArea &area)
 {
-  const auto &points = problem->boundary_points();
-  const auto &triangles = area.triangles();
-#pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    const Vec3 x = to_vec3(points[i]);
-    Vec3 u = Vec3::Zero();
-    for (const SweptTriangle &t : triangles)
-      u += triangle_displacement(medium.nu, x, t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);
-    infinite_displacement[i] += to_tensor(u);
-  }
+  std::vector<TriangularLoop> loops;
+  loops.reserve(area.triangles().size());
+  for (const SweptTriangle &t : area.triangles())
+    loops.emplace_back(t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);
+  const std::vector<Vec3> u = triangle_displacements(medium.nu, loops, boundary_nodes());
+  for (std::size_t i = 0; i < u.size(); ++i)
+    infinite_displacement[i] += to_tensor(u[i]);
 }
 
 GrainSolution FiniteGrain::solve_at_rest(const LineSystem &lines)

@@ -7,7 +7,7 @@
 set -euo pipefail
 
 build_packages=(
-  cmake ninja-build g++ libopenmpi-dev openmpi-bin libeigen3-dev libdeal.ii-dev libhdf5-openmpi-dev libcli11-dev
+  cmake ninja-build g++ libopenmpi-dev openmpi-bin libeigen3-dev libhwy-dev libdeal.ii-dev libhdf5-openmpi-dev libcli11-dev
   nlohmann-json3-dev python3 python3-numpy python3-matplotlib
 )
 test_packages=(git libgtest-dev libbenchmark-dev clang-format clang-tidy)

@@ -28,10 +28,43 @@
 
 #include "dd/common/types.h"
 #include "dd/elasticity/isotropic.h"
-#include "dd/elasticity/segment_stress.h"
+#include "dd/elasticity/triangular_loop.h"
+#include "dd/elasticity/vectorised/displacement_kernels.h"
+#include "dd/elasticity/vectorised/stress_kernels.h"
 
 namespace ddfem
 {
+/// What all points share. Internal to dd/elasticity.
+struct SegmentImageData
+{
+  IsotropicMedium medium;
+  Vec3 start, end, burgers; ///< of the mirror image, nm
+  Vec3 t, edge;             ///< unit direction of the mirror image; burgers x t, nm
+  Vec3 e;                   ///< (e_x, e_y, -e_z)/(1-nu), nm
+  Vec3 c;                   ///< nm, third component zero
+  Vec3 core;                ///< -a^2 t_z (b_y, -b_x, 0), nm^3
+  double length;            ///< nm
+  double branch;            ///< sum of the distances of the ends from where D has branch points, nm
+  double tolerance;         ///< relative error of the quadrature
+  TriangularLoop strip;     ///< the mirror image and its legs
+};
+
+struct LegImageData
+{
+  IsotropicMedium medium;
+  Vec3 origin, burgers; ///< of the mirror image, nm
+  Vec3 c;
+  double of_chi, of_psi, of_lambda; ///< coefficients in phi: 1, nm, nm^2
+  double a2;                        ///< nm^2
+};
+
+struct PiercingImageData
+{
+  IsotropicMedium medium;
+  Vec3 origin, burgers; ///< of the mirror image of the leg, nm
+  double screw;         ///< b_z of the line with sense +z, nm
+};
+
 /// Image field of one straight segment under the free surface z = 0 of the half-space z > 0.
 class SegmentImage
 {
@@ -44,20 +77,15 @@ public:
   SymTensor stress(const Vec3 &x) const;
   /// Displacement (nm) at @p x; the mirror image is closed by its legs, so that nothing jumps in z >= 0.
   Vec3 displacement(const Vec3 &x) const;
+  /// Add the same at many points, with the same points of the quadrature, by vector instructions.
+  void add_stress(const StressBatch &batch) const;
+  void add_displacement(const DisplacementBatch &batch) const;
 
   /// Distance (nm) of @p x from the singularities of the stress, which lie on the mirror image.
   double distance(const Vec3 &x) const;
 
 private:
-  template <typename Add> void for_each_point(const Vec3 &x, Add &&add) const;
-
-  Vec3 start, end, mirrored_burgers;
-  SegmentStressField mirror;
-  Vec3 t;    // unit direction of the mirror image
-  Vec3 e;    // (e_x, e_y, -e_z)/(1-nu), nm
-  Vec3 c;    // nm, third component zero
-  Vec3 core; // -a^2 t_z (b_y, -b_x, 0), nm^3
-  double length, a2, mu, nu, quadrature_tolerance;
+  SegmentImageData data;
 };
 
 /// Image field of the half-line from @p x (z >= 0) to z = infinity, line sense away from @p x: a leg of the ends of a
@@ -73,16 +101,14 @@ public:
   /// Displacement of the part that is not the mirror image, nm; the mirror image of the leg belongs to the segments'
   /// SegmentImage::displacement(). Up to a rigid translation.
   Vec3 displacement(const Vec3 &x) const;
+  void add_stress(const StressBatch &batch) const;
+  void add_displacement(const DisplacementBatch &batch) const;
 
   /// As SegmentImage::distance(); mirrored legs run away from the body, so that their end is nearest.
-  double distance(const Vec3 &x) const { return (x - origin).norm(); }
+  double distance(const Vec3 &x) const { return (x - data.origin).norm(); }
 
 private:
-  Vec3 origin; // of the mirror image
-  RayStressField mirror;
-  Vec3 c;
-  double of_chi, of_psi, of_lambda; // coefficients in phi: 1, nm, nm^2
-  double a2, mu, nu;
+  LegImageData data;
 };
 
 /// Image field of the whole line that pierces the surface at @p x (z = 0) along its normal, less the parts that
@@ -98,12 +124,12 @@ public:
   SymTensor stress(const Vec3 &x) const;
   /// Without the mirror image of the leg, as in LegImage::displacement().
   Vec3 displacement(const Vec3 &x) const;
+  void add_stress(const StressBatch &batch) const;
+  void add_displacement(const DisplacementBatch &batch) const;
 
-  double distance(const Vec3 &x) const { return (x - origin).norm(); }
+  double distance(const Vec3 &x) const { return (x - data.origin).norm(); }
 
 private:
-  Vec3 origin;
-  RayStressField mirror;
-  double screw, a2, mu; // screw: b_z of the line with sense +z, nm
+  PiercingImageData data;
 };
 } // namespace ddfem

@@ -1,5 +1,7 @@
 #include "dd/elasticity/panel_quadrature.h"
 
+#include "dd/elasticity/panel_plan-inl.h"
+
 #include <cmath>
 #include <limits>
 
@@ -9,7 +11,7 @@ void LineSingularities::add_end(const Vec3 &end, double a, const Vec3 &x3, const
 {
   const Vec3 r = end - x3;
   const double z = r.dot(t);
-  singularities[n++] = {z, std::sqrt((r - z * t).squaredNorm() + a * a)};
+  singularities[n++] = {z, (r - z * t).squaredNorm() + a * a};
 }
 
 void LineSingularities::add_pinch(const Vec3 &x1, const Vec3 &t12, double source_length, double a, const Vec3 &x3,
@@ -26,7 +28,7 @@ void LineSingularities::add_pinch(const Vec3 &x1, const Vec3 &t12, double source
   if (along_source < 0.0 || along_source > source_length)
     return;
   const double gap = r.dot(normal);
-  singularities[n++] = {-r.cross(t12).dot(normal) / sine2, std::sqrt((gap * gap / sine2 + a * a) / sine2)};
+  singularities[n++] = {-r.cross(t12).dot(normal) / sine2, (gap * gap / sine2 + a * a) / sine2};
 }
 
 LineSingularities LineSingularities::of_segment(const Vec3 &x1, const Vec3 &x2, double a, const Vec3 &x3, const Vec3 &t)
@@ -61,38 +63,41 @@ double LineSingularities::ellipse(double begin, double end) const
   double sum = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < n; ++k)
   {
-    const double h2 = singularities[k].height * singularities[k].height;
     const double from_begin = singularities[k].position - begin, from_end = singularities[k].position - end;
-    sum = std::min(sum, std::sqrt(from_begin * from_begin + h2) + std::sqrt(from_end * from_end + h2));
+    sum = std::min(sum, std::sqrt(from_begin * from_begin + singularities[k].height2) +
+                            std::sqrt(from_end * from_end + singularities[k].height2));
   }
-  const double c = sum / (end - begin); // (rho + 1/rho)/2
-  return c > 1.0 ? c + std::sqrt(c * c - 1.0) : 1.0;
+  return sum / (end - begin);
 }
 
-double LineSingularities::longest_panel(double begin, double rho, double floor) const
+double LineSingularities::longest_panel(double begin, double c, double floor) const
 {
   // |z - A| + |z - B| >= c |AB| with A given, solved for |AB|.
-  const double c = 0.5 * (rho + 1.0 / rho);
   double length = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < n; ++k)
   {
     const double u = singularities[k].position - begin;
-    const double h = std::max(singularities[k].height, floor);
-    length = std::min(length, 2.0 * (c * std::sqrt(u * u + h * h) - u) / (c * c - 1.0));
+    const double height2 = std::max(singularities[k].height2, floor * floor);
+    length = std::min(length, 2.0 * (c * std::sqrt(u * u + height2) - u) / (c * c - 1.0));
   }
   return length;
 }
 
-int n_gauss_points(double rho, double tolerance)
+int n_gauss_points(double c, double tolerance)
 {
-  // Error bound ~ safety rho^(1 - 2n): one power is lost to the linear shape functions, and the safety factor covers
-  // the growth of the integrand towards its singularity on the ellipse. Repeated products are cheaper than two
-  // logarithms.
-  constexpr double safety = 200.0;
-  const double wanted = safety / tolerance, rho2 = rho * rho;
-  int n = 2;
-  for (double reached = rho2 * rho; reached < wanted && n < max_gauss_points; reached *= rho2)
-    ++n;
-  return n;
+  return static_cast<int>(HWY_NAMESPACE::n_points_on_panel(c, tolerance));
+}
+
+int n_gauss_points_for_segment(const Vec3 &x1, const Vec3 &x2, double a, const Vec3 &x3, const Vec3 &x4, const Vec3 &t,
+                               double tolerance)
+{
+  using HWY_NAMESPACE::vector_of;
+  const double length12 = (x2 - x1).norm();
+  const auto v1 = vector_of<double>(x1), v2 = vector_of<double>(x2);
+  const auto t12 = length12 > 0.0 ? vector_of<double>((x2 - x1) / length12) : vector_of<double>(Vec3::Zero());
+  const HWY_NAMESPACE::Line<double> line{v1, v2, t12, {}, {}, length12};
+  const HWY_NAMESPACE::Panel<double> panel{vector_of<double>(x3), vector_of<double>(x4), vector_of<double>(t),
+                                           (x4 - x3).norm()};
+  return n_gauss_points(HWY_NAMESPACE::ellipse_of_segment(line, panel, a * a), tolerance);
 }
 } // namespace ddfem::internal

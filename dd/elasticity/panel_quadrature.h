@@ -35,19 +35,19 @@ public:
   static LineSingularities of_ray(const Vec3 &origin, const Vec3 &direction, double a, const Vec3 &x3, const Vec3 &t);
 
   /// Adds position +- i height; three in all.
-  void add(double position, double height) { singularities[n++] = {position, height}; }
+  void add(double position, double height) { singularities[n++] = {position, height * height}; }
 
-  /// Size rho of the largest Bernstein ellipse of panel [@p begin, @p end] free of singularities.
+  /// (rho + 1/rho)/2 of the largest Bernstein ellipse of panel [@p begin, @p end] free of singularities.
   double ellipse(double begin, double end) const;
 
-  /// Length of the longest panel that starts at @p begin and has ellipse() >= @p rho; infinite if there is no limit.
+  /// Length of the longest panel that starts at @p begin and has ellipse() >= @p c; infinite if there is no limit.
   /// Singularities are kept at least @p floor away from the line, so that the length is never zero.
-  double longest_panel(double begin, double rho, double floor) const;
+  double longest_panel(double begin, double c, double floor) const;
 
 private:
   struct Singularity
   {
-    double position, height;
+    double position, height2;
   };
   void add_end(const Vec3 &end, double a, const Vec3 &x3, const Vec3 &t);
   void add_pinch(const Vec3 &x1, const Vec3 &t12, double source_length, double a, const Vec3 &x3, const Vec3 &t);
@@ -56,30 +56,47 @@ private:
   std::size_t n = 0;
 };
 
-/// Number of Gauss points for error @p tolerance on a panel with Bernstein ellipse @p rho.
-int n_gauss_points(double rho, double tolerance);
+/// Number of Gauss points for error @p tolerance on a panel with ellipse() = @p c; 0: a graded partition is needed.
+int n_gauss_points(double c, double tolerance);
+/// The same for the force on segment @p x3 -> @p x4 (unit direction @p t) in the field of segment @p x1 -> @p x2, from
+/// a cheaper lower bound of c where they are far apart.
+int n_gauss_points_for_segment(const Vec3 &x1, const Vec3 &x2, double a, const Vec3 &x3, const Vec3 &x4, const Vec3 &t,
+                               double tolerance);
 
-/// Calls @p add(z, weight) for the points z in [0, @p length] (nm) and weights (nm) of a rule adapted to the
-/// singularities.
-template <typename Add>
-void integrate_on_panels(const LineSingularities &singularities, double length, double tolerance, Add &&add)
+/// Calls @p add(z, weight) for the points z in [@p begin, @p end] (nm) and weights (nm) of a rule with @p n points.
+template <typename Add> void integrate_on_panel(int n, double begin, double end, Add &&add)
 {
-  // A single panel with a moderately small ellipse is cheaper than two with large ones; the cost of a graded partition
-  // is nearly flat around an ellipse of 2.3 (panels that grow by a factor of six).
-  constexpr double smallest_single = 1.6, smallest_graded = 2.2, relative_floor = 1e-8;
-  const double rho = singularities.ellipse(0.0, length);
-  const bool single = rho >= smallest_single;
+  const GaussRule rule = gauss_rule(n);
+  for (std::size_t i = 0; i < rule.points.size(); ++i)
+    add(begin + rule.points[i] * (end - begin), rule.weights[i] * (end - begin));
+}
+
+/// The same on panels of [0, @p length] that grow with the distance from the singularities. A single panel with a
+/// moderately small ellipse (n_gauss_points() > 0) is cheaper than two with large ones; the cost of a graded partition is
+/// nearly flat around an ellipse of rho = 2.3 (panels that grow by a factor of six).
+template <typename Add>
+void integrate_graded(const LineSingularities &singularities, double length, double tolerance, Add &&add)
+{
+  constexpr double smallest_c = 0.5 * (2.2 + 1.0 / 2.2), relative_floor = 1e-8;
   double begin = 0.0;
   while (begin < length)
   {
-    double end = length;
-    if (!single)
-      end = std::min(length, begin + singularities.longest_panel(begin, smallest_graded, relative_floor * length));
-    const double panel_rho = single ? rho : std::max(singularities.ellipse(begin, end), smallest_graded);
-    const GaussRule rule = gauss_rule(n_gauss_points(panel_rho, tolerance));
-    for (std::size_t i = 0; i < rule.points.size(); ++i)
-      add(begin + rule.points[i] * (end - begin), rule.weights[i] * (end - begin));
+    const double end =
+        std::min(length, begin + singularities.longest_panel(begin, smallest_c, relative_floor * length));
+    integrate_on_panel(n_gauss_points(std::max(singularities.ellipse(begin, end), smallest_c), tolerance), begin, end,
+                       add);
     begin = end;
   }
+}
+
+/// One or the other, as the singularities demand.
+template <typename Add>
+void integrate_on_panels(const LineSingularities &singularities, double length, double tolerance, Add &&add)
+{
+  const int n = n_gauss_points(singularities.ellipse(0.0, length), tolerance);
+  if (n > 0)
+    integrate_on_panel(n, 0.0, length, add);
+  else
+    integrate_graded(singularities, length, tolerance, add);
 }
 } // namespace ddfem::internal

@@ -1,6 +1,6 @@
 #include "dd/elasticity/segment_energy.h"
 
-#include "dd/elasticity/line_integrals.h"
+#include "dd/elasticity/line_stress-inl.h"
 #include "dd/elasticity/panel_quadrature.h"
 
 #include <cmath>
@@ -25,8 +25,8 @@ double segment_interaction_energy(const IsotropicMedium &medium, const Vec3 &x1,
     const Vec3 x = x3 + z * t34;
     const double s1 = (x1 - x).dot(t12), s2 = (x2 - x).dot(t12);
     const Vec3 d = std::abs(s1) < std::abs(s2) ? Vec3(x - x1 + s1 * t12) : Vec3(x - x2 + s2 * t12);
-    const internal::SegmentGeometry geometry(s1, s2, length12, d.squaredNorm() + a2);
-    const double j01 = geometry.j01(), j03 = geometry.j03();
+    const HWY_NAMESPACE::SegmentGeometry<double> geometry(s1, s2, length12, d.squaredNorm() + a2);
+    const double j01 = std::log1p(geometry.of_j01()), j03 = geometry.j03();
     // e12 . (I/R_a - R R/R_a^3) . e34 with R = d - s t12 and e12.t12 = 0.
     const double hessian = e12.dot(e34) * j01 - d.dot(e12) * (d.dot(e34) * j03 - t12.dot(e34) * geometry.j13());
     energy += weight * (laplacian_factor * (2.0 * j01 + a2 * j03) + hessian_factor * hessian);

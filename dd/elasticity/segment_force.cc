@@ -8,19 +8,20 @@ namespace ddfem
 namespace
 {
 /// Peach-Koehler force of @p stress on the segment that starts at @p x3 with direction @p t, shared by its nodes.
-template <typename Field>
-SegmentForces integrate_force(const Field &stress, const internal::LineSingularities &singularities, const Vec3 &x3,
-                              const Vec3 &t, double length, const Vec3 &b34, double tolerance)
+/// @p integrate(add) calls add(z, weight) for the points of a rule.
+template <typename Field, typename Integrate>
+SegmentForces integrate_force(const Field &stress, const Vec3 &x3, const Vec3 &t, double length, const Vec3 &b34,
+                              Integrate &&integrate)
 {
   // (sigma.b) x t is linear in sigma.b: integrate that, and take the cross product once.
   Vec3 total = Vec3::Zero(), first_moment = Vec3::Zero();
-  internal::integrate_on_panels(singularities, length, tolerance,
-                                [&](double z, double weight)
-                                {
-                                  const Vec3 traction = weight * contract(stress(x3 + z * t), b34);
-                                  total += traction;
-                                  first_moment += z * traction;
-                                });
+  integrate(
+      [&](double z, double weight)
+      {
+        const Vec3 traction = weight * contract(stress(x3 + z * t), b34);
+        total += traction;
+        first_moment += z * traction;
+      });
   first_moment /= length;
   return {(total - first_moment).cross(t), first_moment.cross(t)};
 }
@@ -33,9 +34,17 @@ SegmentForces segment_force(const IsotropicMedium &medium, const Vec3 &x1, const
   if (length == 0.0)
     return {};
   const Vec3 t = (x4 - x3) / length;
-  return integrate_force(SegmentStressField(medium, x1, x2, b12),
-                         internal::LineSingularities::of_segment(x1, x2, medium.a, x3, t), x3, t, length, b34,
-                         tolerance);
+  const int n = internal::n_gauss_points_for_segment(x1, x2, medium.a, x3, x4, t, tolerance);
+  return integrate_force(SegmentStressField(medium, x1, x2, b12), x3, t, length, b34,
+                         [&](const auto &add)
+                         {
+                           if (n > 0)
+                             internal::integrate_on_panel(n, 0.0, length, add);
+                           else
+                             internal::integrate_graded(
+                                 internal::LineSingularities::of_segment(x1, x2, medium.a, x3, t), length, tolerance,
+                                 add);
+                         });
 }
 
 SegmentForces segment_force_from_ray(const IsotropicMedium &medium, const Vec3 &origin, const Vec3 &direction,
@@ -46,8 +55,12 @@ SegmentForces segment_force_from_ray(const IsotropicMedium &medium, const Vec3 &
   if (length == 0.0)
     return {};
   const Vec3 t = (x4 - x3) / length;
-  return integrate_force(RayStressField(medium, origin, direction, b_ray),
-                         internal::LineSingularities::of_ray(origin, direction, medium.a, x3, t), x3, t, length, b34,
-                         tolerance);
+  return integrate_force(RayStressField(medium, origin, direction, b_ray), x3, t, length, b34,
+                         [&](const auto &add)
+                         {
+                           internal::integrate_on_panels(
+                               internal::LineSingularities::of_ray(origin, direction, medium.a, x3, t), length,
+                               tolerance, add);
+                         });
 }
 } // namespace ddfem

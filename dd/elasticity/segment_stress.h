@@ -14,20 +14,10 @@
 
 #include "dd/common/types.h"
 #include "dd/elasticity/isotropic.h"
-#include "dd/elasticity/stress_point.h"
-
-#include <cstddef>
+#include "dd/elasticity/vectorised/stress_kernels.h"
 
 namespace ddfem
 {
-/// Points and the stresses at them, component by component, for evaluation in a vectorised loop.
-struct StressBatch
-{
-  std::size_t n;      ///< number of points
-  const double *x[3]; ///< coordinates, nm
-  double *sigma[6];   ///< xx yy zz xy xz yz, MPa
-};
-
 /// Stress (MPa) at @p x (nm) of the segment @p x1 -> @p x2 (nm) with Burgers vector @p b (nm, FS/RH). Zero for a
 /// segment of length zero. A core radius of zero is allowed as long as @p x is not on the segment.
 SymTensor segment_stress(const IsotropicMedium &medium, const Vec3 &x, const Vec3 &x1, const Vec3 &x2, const Vec3 &b);
@@ -46,14 +36,13 @@ public:
 
   /// Stress at @p x, MPa.
   SymTensor operator()(const Vec3 &x) const;
-  /// Adds the stress at many points. The loop is vectorised for the processor that the program runs on; the result may
-  /// differ from operator() by rounding.
+  /// Adds the stress at many points, as add_segment_stress() does.
   void add(const StressBatch &batch) const;
 
 private:
-  Vec3 x1, x2;
+  IsotropicMedium medium;
+  Vec3 x1, x2, t, b;
   double length;
-  internal::LineConstants constants;
 };
 
 /// The stress field of one ray, for evaluation at many points; same arguments as ray_stress().
@@ -64,11 +53,11 @@ public:
 
   /// Stress at @p x, MPa.
   SymTensor operator()(const Vec3 &x) const;
-  /// As SegmentStressField::add().
+  /// As add_ray_stress().
   void add(const StressBatch &batch) const;
 
 private:
-  Vec3 origin;
-  internal::LineConstants constants;
+  IsotropicMedium medium;
+  Vec3 origin, direction, b;
 };
 } // namespace ddfem

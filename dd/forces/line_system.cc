@@ -14,16 +14,18 @@ LineSystem::LineSystem(const IsotropicMedium &medium_, const Network &network, c
     : elastic_medium(medium_), shifts{Vec3::Zero()}, periodic_cell(cell_), images(images_)
 {
   straight_lines.reserve(network.n_segments());
+  segments.reserve(network.n_segments());
   for (const SegmentIndex s : network.segments())
   {
     Vec3 start = network.position(network.start(s));
     const Vec3 t = network.direction(s);
     if (periodic_cell)
       start += periodic_cell->shift_into_cell(start + 0.5 * t);
-    straight_lines.push_back({start, start + t, network.burgers(s)});
+    add_line(start, start + t, network.burgers(s));
   }
   if (shape)
-    virtual_ray_list = virtual_rays(network, *shape, rule);
+    for (const VirtualRay &r : virtual_rays(network, *shape, rule))
+      add_ray(r);
   if (images_)
   {
     shifts = images_->near_shifts();
@@ -38,9 +40,21 @@ LineSystem::LineSystem(const IsotropicMedium &medium_, const Network &network, c
 void LineSystem::close(const OpenLines &open)
 {
   for (const StraightLine &l : open.lines)
-    straight_lines.push_back({l.start, l.end, -l.burgers});
+    add_line(l.start, l.end, -l.burgers);
   for (const VirtualRay &r : open.rays)
-    virtual_ray_list.push_back({r.origin, r.direction, -r.burgers});
+    add_ray({r.origin, r.direction, -r.burgers});
+}
+
+void LineSystem::add_line(const Vec3 &start, const Vec3 &end, const Vec3 &burgers)
+{
+  straight_lines.push_back({start, end, burgers});
+  segments.add_segment(start, end, burgers);
+}
+
+void LineSystem::add_ray(const VirtualRay &ray)
+{
+  virtual_ray_list.push_back(ray);
+  rays_in_table.add_ray(ray.origin, ray.direction, ray.burgers);
 }
 
 SymTensor LineSystem::stress(const Vec3 &point) const
@@ -59,11 +73,36 @@ SymTensor LineSystem::stress(const Vec3 &point) const
 
 std::vector<SymTensor> LineSystem::stress(std::span<const Vec3> points) const
 {
-  std::vector<SymTensor> values(points.size());
-#pragma omp parallel for schedule(dynamic, 16)
-  for (std::size_t i = 0; i < points.size(); ++i)
-    values[i] = stress(points[i]);
+  std::vector<SymTensor> values(points.size(), SymTensor::Zero());
+  constexpr std::size_t portion = 64;
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t first = 0; first < points.size(); first += portion)
+  {
+    const std::size_t n = std::min(portion, points.size() - first);
+    add_stress(points.subspan(first, n), std::span(values).subspan(first, n));
+  }
   return values;
+}
+
+void LineSystem::add_stress(const std::span<const Vec3> points, const std::span<SymTensor> values) const
+{
+  StressBuffer buffer(points.size());
+  const auto in_cell = [&](const Vec3 &x) { return periodic_cell ? Vec3(x + periodic_cell->shift_into_cell(x)) : x; };
+  for (const Vec3 &shift : shifts)
+  {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      buffer.set_point(i, in_cell(points[i]) - shift);
+    add_segment_stress(elastic_medium, segments, buffer.batch());
+  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    buffer.set_point(i, in_cell(points[i]));
+  add_ray_stress(elastic_medium, rays_in_table, buffer.batch());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    values[i] += buffer.stress(i);
+    if (images)
+      values[i] += images->far_stress(in_cell(points[i]));
+  }
 }
 
 double LineSystem::distance(const Vec3 &x) const

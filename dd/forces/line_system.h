@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dd/elasticity/isotropic.h"
+#include "dd/elasticity/line_table.h"
 #include "dd/forces/open_lines.h"
 #include "dd/forces/periodic_images.h"
 #include "dd/forces/virtual_rays.h"
@@ -30,6 +31,9 @@ public:
   /// In the order of Network::segments(), followed by what close() has added.
   const std::vector<StraightLine> &lines() const { return straight_lines; }
   const std::vector<VirtualRay> &rays() const { return virtual_ray_list; }
+  /// lines() and rays() as the vectorised kernels read them.
+  const LineTable &segment_table() const { return segments; }
+  const LineTable &ray_table() const { return rays_in_table; }
   /// Shifts of the near images (zero first); a single zero without periodicity.
   const std::vector<Vec3> &image_shifts() const { return shifts; }
   const PeriodicImages *far_images() const { return images; }
@@ -43,9 +47,15 @@ public:
   double distance(const Vec3 &x) const;
 
 private:
+  void add_line(const Vec3 &start, const Vec3 &end, const Vec3 &burgers);
+  void add_ray(const VirtualRay &ray);
+  /// Adds the stress at the points, in one thread.
+  void add_stress(std::span<const Vec3> points, std::span<SymTensor> values) const;
+
   IsotropicMedium elastic_medium;
   std::vector<StraightLine> straight_lines;
   std::vector<VirtualRay> virtual_ray_list;
+  LineTable segments, rays_in_table;
   std::vector<Vec3> shifts;
   const PeriodicCell *periodic_cell;
   const PeriodicImages *images;

@@ -3,6 +3,7 @@
 #include "dd/common/parallel.h"
 #include "dd/elasticity/gauss.h"
 #include "dd/elasticity/self_force.h"
+#include "dd/elasticity/vectorised/force_kernels.h"
 
 #include <optional>
 
@@ -53,20 +54,15 @@ void add_line_forces(const LineSystem &system, const std::size_t i, const ForceS
 {
   const StraightLine &line = system.lines()[i];
   const auto &medium = settings.medium;
-  for (std::size_t j = 0; j < system.lines().size(); ++j)
-    for (std::size_t k = 0; k < system.image_shifts().size(); ++k)
-    {
-      if (j == i && k == 0)
-        continue;
-      const Vec3 &shift = system.image_shifts()[k];
-      const StraightLine &other = system.lines()[j];
-      slot(c, k == 0 ? ForceContribution::pairs : ForceContribution::images) +=
-          segment_force(medium, other.start + shift, other.end + shift, other.burgers, line.start, line.end,
-                        line.burgers, settings.pair_tolerance);
-    }
-  for (const VirtualRay &ray : system.rays())
-    slot(c, ForceContribution::rays) += segment_force_from_ray(
-        medium, ray.origin, ray.direction, ray.burgers, line.start, line.end, line.burgers, settings.pair_tolerance);
+  for (std::size_t k = 0; k < system.image_shifts().size(); ++k)
+  {
+    const Vec3 &shift = system.image_shifts()[k];
+    slot(c, k == 0 ? ForceContribution::pairs : ForceContribution::images) +=
+        force_of_segments(medium, system.segment_table(), line.start - shift, line.end - shift, line.burgers,
+                          settings.pair_tolerance, k == 0 ? i : no_line);
+  }
+  slot(c, ForceContribution::rays) =
+      force_of_rays(medium, system.ray_table(), line.start, line.end, line.burgers, settings.pair_tolerance);
   if (system.far_images())
     slot(c, ForceContribution::images) +=
         force_of_smooth_field(line, [&](std::size_t, const Vec3 &x) { return system.far_images()->far_stress(x); });

@@ -1,6 +1,7 @@
 #include "dd/forces/surface_images.h"
 
 #include "dd/elasticity/distance.h"
+#include "dd/elasticity/segment_stress.h"
 #include "dd/elasticity/triangle_displacement.h"
 
 #include <algorithm>
@@ -17,7 +18,8 @@ namespace
 constexpr double same_place = 1e-6;
 /// Depth of a node that lies on a face, nm: well above what the projection onto the surface leaves.
 constexpr double on_face = 1e-3;
-
+/// Points that are evaluated together.
+constexpr std::size_t portion = 32;
 } // namespace
 
 /// Net Burgers vectors that arrive at the ends of the lines with an image, by position.
@@ -60,6 +62,21 @@ Vec3 SurfaceImages::RayTurn::displacement(const Vec3 &x) const
 {
   return triangle_displacement(medium.nu, x, LoopVertex::at(origin), LoopVertex::towards(-Vec3::UnitZ()),
                                LoopVertex::towards(direction), burgers);
+}
+
+void SurfaceImages::RayTurn::add_stress(const StressBatch &batch) const
+{
+  LineTable rays;
+  rays.add_ray(origin, -Vec3::UnitZ(), burgers);
+  rays.add_ray(origin, direction, -burgers);
+  add_ray_stress(medium, rays, batch);
+}
+
+void SurfaceImages::RayTurn::add_displacement(const DisplacementBatch &batch) const
+{
+  const TriangularLoop sector(LoopVertex::at(origin), LoopVertex::towards(-Vec3::UnitZ()),
+                              LoopVertex::towards(direction), burgers);
+  add_triangle_displacement(medium.nu, {&sector, 1}, batch);
 }
 
 double SurfaceImages::RayTurn::distance(const Vec3 &x) const
@@ -181,27 +198,88 @@ SymTensor SurfaceImages::stress(const std::span<const std::size_t> images, const
       images.size(), [&](const std::size_t i) { return images[i]; }, x);
 }
 
+template <typename PieceNumber, typename Visit>
+void SurfaceImages::for_each_plane(const std::size_t n, PieceNumber &&number, Visit &&visit) const
+{
+  std::vector<std::size_t> of_plane;
+  for (std::size_t i = 0; i < n;)
+  {
+    const std::size_t plane = pieces[number(i)].plane;
+    of_plane.clear();
+    for (; i < n && pieces[number(i)].plane == plane; ++i)
+      of_plane.push_back(number(i));
+    visit(planes[plane], of_plane);
+  }
+}
+
+template <typename PieceNumber>
+void SurfaceImages::add_stress_of(const std::size_t n, PieceNumber &&number, const std::span<const Vec3> points,
+                                  const std::span<SymTensor> values) const
+{
+  for_each_plane(n, number,
+                 [&](const Frame &frame, const std::vector<std::size_t> &of_plane)
+                 {
+                   StressBuffer buffer(points.size());
+                   for (std::size_t k = 0; k < points.size(); ++k)
+                     buffer.set_point(k, frame.local(points[k]));
+                   for (const std::size_t i : of_plane)
+                     std::visit([&](const auto &field) { field.add_stress(buffer.batch()); }, pieces[i].field);
+                   for (std::size_t k = 0; k < points.size(); ++k)
+                     values[k] += frame.to_sample(buffer.stress(k));
+                 });
+}
+
+void SurfaceImages::add_stress(const std::span<const std::size_t> images, const std::span<const Vec3> points,
+                               const std::span<SymTensor> values) const
+{
+  add_stress_of(
+      images.size(), [&](const std::size_t i) { return images[i]; }, points, values);
+}
+
 std::vector<SymTensor> SurfaceImages::stress(const std::span<const Vec3> points) const
 {
-  std::vector<SymTensor> values(points.size());
-#pragma omp parallel for schedule(dynamic, 16)
-  for (std::size_t k = 0; k < points.size(); ++k)
-    values[k] = stress(points[k]);
+  std::vector<SymTensor> values(points.size(), SymTensor::Zero());
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t first = 0; first < points.size(); first += portion)
+  {
+    const std::size_t n = std::min(portion, points.size() - first);
+    add_stress_of(
+        pieces.size(), [](const std::size_t i) { return i; }, points.subspan(first, n),
+        std::span(values).subspan(first, n));
+  }
   return values;
+}
+
+void SurfaceImages::add_displacement(const std::span<const Vec3> points, const std::span<Vec3> values) const
+{
+  for_each_plane(
+      pieces.size(), [](const std::size_t i) { return i; },
+      [&](const Frame &frame, const std::vector<std::size_t> &of_plane)
+      {
+        double x[3][portion], u[3][portion] = {};
+        for (std::size_t k = 0; k < points.size(); ++k)
+        {
+          const Vec3 local = frame.local(points[k]);
+          for (std::size_t c = 0; c < 3; ++c)
+            x[c][k] = local[static_cast<Eigen::Index>(c)];
+        }
+        const DisplacementBatch batch{points.size(), {x[0], x[1], x[2]}, {u[0], u[1], u[2]}};
+        for (const std::size_t i : of_plane)
+          std::visit([&](const auto &field) { field.add_displacement(batch); }, pieces[i].field);
+        for (std::size_t k = 0; k < points.size(); ++k)
+          values[k] += frame.to_local.transpose() * Vec3(u[0][k], u[1][k], u[2][k]);
+      });
 }
 
 std::vector<Vec3> SurfaceImages::displacement(const std::span<const Vec3> points) const
 {
   std::vector<Vec3> values(points.size(), Vec3::Zero());
-#pragma omp parallel for schedule(dynamic, 16)
-  for (std::size_t k = 0; k < points.size(); ++k)
-    for (const Piece &piece : pieces)
-    {
-      const Frame &frame = planes[piece.plane];
-      const Vec3 x = frame.local(points[k]);
-      values[k] += frame.to_local.transpose() *
-                   std::visit([&](const auto &field) { return field.displacement(x); }, piece.field);
-    }
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t first = 0; first < points.size(); first += portion)
+  {
+    const std::size_t n = std::min(portion, points.size() - first);
+    add_displacement(points.subspan(first, n), std::span(values).subspan(first, n));
+  }
   return values;
 }
 

@@ -60,6 +60,8 @@ public:
   int face_of_image(std::size_t image) const { return planes[pieces[image].plane].face_id; }
   /// Stress of some of the images, in ascending order, MPa.
   SymTensor stress(std::span<const std::size_t> images, const Vec3 &x) const;
+  /// Adds the same at many points to @p values, in one thread.
+  void add_stress(std::span<const std::size_t> images, std::span<const Vec3> points, std::span<SymTensor> values) const;
   /// Lower bound of the distance of a point of the grain from the singularities of one image, nm.
   double image_distance(std::size_t image, const Vec3 &x) const;
 
@@ -99,6 +101,8 @@ private:
     Vec3 origin, direction, burgers; ///< of the virtual ray
     SymTensor stress(const Vec3 &x) const;
     Vec3 displacement(const Vec3 &x) const;
+    void add_stress(const StressBatch &batch) const;
+    void add_displacement(const DisplacementBatch &batch) const;
     double distance(const Vec3 &x) const;
   };
   struct Piece
@@ -110,6 +114,13 @@ private:
 
   class NodeFluxes;
   template <typename PieceNumber> SymTensor sum_of_pieces(std::size_t n, PieceNumber &&number, const Vec3 &x) const;
+  /// Calls @p visit(plane, pieces) for each plane with the numbers of its pieces among number(0) ... number(n - 1).
+  template <typename PieceNumber, typename Visit>
+  void for_each_plane(std::size_t n, PieceNumber &&number, Visit &&visit) const;
+  template <typename PieceNumber>
+  void add_stress_of(std::size_t n, PieceNumber &&number, std::span<const Vec3> points,
+                     std::span<SymTensor> values) const;
+  void add_displacement(std::span<const Vec3> points, std::span<Vec3> values) const;
   void add_plane(const LineSystem &lines, std::size_t plane, const ImageSettings &settings);
   void add_lines(const LineSystem &lines, std::size_t plane, const ImageSettings &settings, NodeFluxes &fluxes);
   void add_rays(const LineSystem &lines, std::size_t plane, NodeFluxes &fluxes);

@@ -1,11 +1,14 @@
 // Images of a whole network: what remains of the tractions on the faces, equilibrium, independence of the closure.
+#include "dd/elasticity/segment_stress.h"
 #include "dd/forces/segment_points.h"
 #include "dd/forces/surface_images.h"
 #include "dd/microstructure/sources.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace ddfem
@@ -117,12 +120,36 @@ TEST_P(SurfaceImagesOfANetwork, HaveTheStressOfTheirDisplacement)
   }
 }
 
-TEST_P(SurfaceImagesOfANetwork, AreTheSameOnOneAndTwoThreads)
+TEST_P(SurfaceImagesOfANetwork, AreTheSameBitsOnAnyNumberOfThreads)
+{
+  const auto points = points_on_top();
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const auto one = images.stress(points);
+  const auto one_displacement = images.displacement(points);
+  omp_set_num_threads(3);
+  EXPECT_EQ(images.stress(points), one);
+  EXPECT_EQ(images.displacement(points), one_displacement);
+  omp_set_num_threads(threads);
+}
+
+// To rounding (tests/dd/elasticity/image_kernels_test.cc states the bound for each): 1e-12 of what is summed.
+TEST_P(SurfaceImagesOfANetwork, AtManyPointsAreThoseAtEach)
 {
   const auto points = points_on_top();
   const auto many = images.stress(points);
+  std::vector<std::size_t> all(images.n_images());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<SymTensor> chosen(points.size(), SymTensor::Zero());
+  images.add_stress(all, points, chosen);
+  EXPECT_EQ(chosen, many);
   for (std::size_t k = 0; k < points.size(); ++k)
-    EXPECT_EQ(many[k], images.stress(points[k]));
+  {
+    double magnitude = 0;
+    for (std::size_t i = 0; i < images.n_images(); ++i)
+      magnitude += images.stress(std::vector<std::size_t>{i}, points[k]).norm();
+    EXPECT_LT((many[k] - images.stress(points[k])).norm(), 1e-12 * magnitude);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(WithRays, SurfaceImagesOfANetwork,
