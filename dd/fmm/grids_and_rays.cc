@@ -1,4 +1,4 @@
-#include "dd/fmm/multipole_stress.h"
+#include "dd/fmm/grids_and_rays.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "dd/fmm/multipole_stress.h"
 
 #include "dd/fmm/accuracy.h"
+#include "dd/fmm/grids_and_rays.h"
 
 #include <algorithm>
 #include <chrono>
@@ -55,6 +56,23 @@ void translate_box(const Translation &t, const Vec3 &shift, const Row *fields, c
     target.q[k] += out(k, 0);
 }
 
+/// A batch at points moved by @p shift (nm).
+struct ShiftedBatch
+{
+  std::array<std::vector<double>, 3> x;
+  StressBatch batch;
+
+  ShiftedBatch(const StressBatch &given, const Vec3 &shift) : batch(given)
+  {
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      for (std::size_t i = 0; i < given.n; ++i)
+        x[c].push_back(given.x[c][i] + shift[static_cast<int>(c)]);
+      batch.x[c] = x[c].data();
+    }
+  }
+};
+
 std::size_t octant_of(const Box &box)
 {
   return static_cast<std::size_t>((box.place[0] & 1) + 2 * (box.place[1] & 1) + 4 * (box.place[2] & 1));
@@ -67,17 +85,19 @@ MultipoleStress::MultipoleStress(const IsotropicMedium &medium_, const Multipole
     : medium(medium_), settings(settings_),
       expansion_order_(settings.order > 0 ? settings.order : expansion_order(settings.tolerance)),
       tree(grid, lines, points, tree_settings(medium, settings, expansion_order_)),
-      rays(distant_rays.begin(), distant_rays.end()), multipole(tree.boxes().size(), expansion_order_),
-      local(tree.boxes().size(), expansion_order_)
+      rays(distant_rays.begin(), distant_rays.end()), multipole(0, 0), local(0, 0)
 {
   sources.reserve(lines.size());
   for (const std::uint32_t i : tree.line_order())
+  {
     sources.push_back(lines[i]);
+    line_table.add_segment(lines[i].start, lines[i].end, lines[i].burgers);
+  }
+  for (const RaySource &r : rays)
+    ray_table.add_ray(r.origin, r.direction, r.burgers);
   for (std::size_t c = 0; c < 3; ++c)
     for (const std::uint32_t i : tree.point_order())
       x[c].push_back(points[i][static_cast<int>(c)]);
-  for (std::vector<double> &s : sigma)
-    s.assign(points.size(), 0.0);
   for (std::uint32_t i = 0; i < tree.boxes().size(); ++i)
     if (tree.boxes()[i].is_leaf() && tree.boxes()[i].n_points() > 0)
       leaves.push_back(i);
@@ -247,23 +267,25 @@ void MultipoleStress::evaluate_far(const std::size_t leaf)
 
 void MultipoleStress::evaluate_near(const std::size_t leaf)
 {
-  const StressBatch batch = batch_of(tree.boxes()[leaf]);
+  std::vector<std::vector<unsigned>> near(tree.image_shifts().size()); // by image
   for (std::size_t i = leaf;; i = tree.boxes()[i].parent)
   {
     for (const NearLink &link : tree.near_links(i))
     {
       const Box &source = tree.boxes()[link.box];
-      const Vec3 &shift = tree.image_shifts()[link.image];
-      const std::uint32_t end = link.own_only ? source.own_lines_end : source.lines_end;
-      for (std::uint32_t k = source.lines_begin; k < end; ++k)
-        SegmentStressField(medium, sources[k].start + shift, sources[k].end + shift, sources[k].burgers).add(batch);
+      for (unsigned k = source.lines_begin; k < (link.own_only ? source.own_lines_end : source.lines_end); ++k)
+        near[link.image].push_back(k);
     }
     if (tree.boxes()[i].level == 0)
       break;
   }
+  const StressBatch batch = batch_of(tree.boxes()[leaf]);
+  add_segment_stress(medium, line_table, near[0], batch);
+  for (std::size_t image = 1; image < near.size(); ++image)
+    if (!near[image].empty())
+      add_segment_stress(medium, line_table, near[image], ShiftedBatch(batch, -tree.image_shifts()[image]).batch);
   if (tree.boxes()[leaf].level < level_of_distant_rays)
-    for (const RaySource &r : rays)
-      RayStressField(medium, r.origin, r.direction, r.burgers).add(batch);
+    add_ray_stress(medium, ray_table, batch);
 }
 
 double MultipoleStress::work(const std::size_t leaf) const
@@ -311,8 +333,11 @@ void MultipoleStress::choose_share(MPI_Comm comm)
 std::vector<SymTensor> MultipoleStress::stress(MPI_Comm comm, const Part part)
 {
   choose_share(comm);
+  for (std::vector<double> &s : sigma)
+    s.assign(tree.point_order().size(), 0.0);
   if (part != Part::near)
   {
+    multipole = local = Expansions(tree.boxes().size(), expansion_order_);
     compute_moments();
     translate_far();
     pass_down();

@@ -1,6 +1,7 @@
 // Stress of many dislocation lines at many points by a fast multipole method.
 #pragma once
 
+#include "dd/elasticity/line_table.h"
 #include "dd/fmm/octree.h"
 #include "dd/fmm/translation.h"
 
@@ -30,7 +31,7 @@ private:
 /// Wall-clock times of the phases on this rank, s.
 struct PhaseTimes
 {
-  double tree = 0, upward = 0, translations = 0, downward = 0, points = 0, near = 0;
+  double upward = 0, translations = 0, downward = 0, points = 0, near = 0;
 };
 
 struct MultipoleSettings
@@ -42,22 +43,6 @@ struct MultipoleSettings
   /// Factor to the assumed cost of a translation: smaller for a deeper tree.
   double translation_cost_factor = 1.0;
 };
-
-/// Level of the boxes that get the field of distant rays as one local expansion: all points lie in eight of them, at the centre
-/// of a root that is four times as wide as the body (see cut_rays()).
-inline constexpr int level_of_distant_rays = 3;
-
-/// Replaces @p rays by segments within @p grid, appended to @p lines, and what is left of each beyond it. Pieces have at least the
-/// length @p shortest (nm) and at most a quarter of the way from the origin of the ray: far pieces have no near points.
-std::vector<RaySource> cut_rays(std::span<const RaySource> rays, const RootGrid &grid, double shortest,
-                                std::vector<LineSource> &lines);
-
-/// Root grid of a periodic cell from @p origin with edges @p lengths (nm): boxes that are nearly cubes.
-RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths);
-
-/// Root cube around lines, rays' origins and points; four times as wide if there are rays.
-RootGrid enclosing_grid(std::span<const LineSource> lines, std::span<const RaySource> rays,
-                        std::span<const Vec3> points);
 
 /**
  * Stress of lines at points: near pairs of boxes by the closed form (segment_stress.h), distant pairs by expansions of nine
@@ -71,14 +56,15 @@ public:
                   std::span<const LineSource> lines, std::span<const RaySource> distant_rays,
                   std::span<const Vec3> points);
 
-  /// Stress at the points in the order given, MPa. Collective: every rank of @p comm computes a share of about equal cost and gets
-  /// all values. @p near_only and @p far_only: one part, for tests and measurements.
+  /// What to sum: all of it, or one part, for tests and measurements.
   enum class Part : std::uint8_t
   {
     all,
     near,
     far
   };
+  /// Stress at the points in the order given, MPa. Collective: every rank of @p comm computes a share of about equal cost and
+  /// gets all values.
   std::vector<SymTensor> stress(MPI_Comm comm, Part part = Part::all);
 
   const Octree &octree() const { return tree; }
@@ -115,6 +101,7 @@ private:
   MultipoleSettings settings;
   int expansion_order_;
   Octree tree;
+  LineTable line_table, ray_table; ///< of `sources` and `rays`
   std::vector<LineSource> sources; ///< in the tree's order
   std::vector<RaySource> rays;
   std::array<std::vector<double>, 3> x; ///< points in the tree's order

@@ -1,5 +1,7 @@
 #include "dd/forces/multipole_field.h"
 
+#include "dd/fmm/grids_and_rays.h"
+
 #include <algorithm>
 
 namespace ddfem

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dd/elasticity/segment_force.h"
+#include "dd/elasticity/vectorised/force_kernels.h"
 #include "dd/fmm/multipole_stress.h"
 #include "dd/forces/line_system.h"
 
@@ -83,10 +84,17 @@ private:
     double begin, end;
   };
 
+  /// Lines too near to a panel for its rule, among them the panel's own.
+  struct NearSources
+  {
+    LineTable table;
+    std::size_t itself = no_line;
+  };
+
   std::vector<Panel> panels_of(std::size_t i) const;
   SegmentForces panel_force(std::size_t i, const Panel &panel, std::size_t first_point) const;
   void replace_near(std::size_t i, const Panel &panel, SegmentForces &force) const;
-  std::vector<fmm::LineSource> near_sources(std::size_t i, const Vec3 &start, const Vec3 &end) const;
+  NearSources near_sources(std::size_t i, const Vec3 &start, const Vec3 &end) const;
   template <class Stress>
   SegmentForces quadrature(const StraightLine &line, const Panel &panel, Stress &&stress_at) const;
 

@@ -1,6 +1,7 @@
 #include "dd/elasticity/distance.h"
 #include "dd/elasticity/gauss.h"
-#include "dd/elasticity/segment_stress.h"
+#include "dd/elasticity/vectorised/force_kernels.h"
+#include "dd/elasticity/vectorised/stress_kernels.h"
 #include "dd/forces/multipole_field.h"
 
 #include <algorithm>
@@ -103,39 +104,32 @@ SegmentForces MultipoleForces::operator()(const std::size_t i) const
 
 SegmentForces MultipoleForces::panel_force(const std::size_t i, const Panel &panel, const std::size_t first) const
 {
-  const StraightLine &line = system.lines()[i];
-  const SegmentStressField own(system.medium(), line.start, line.end, line.burgers);
-  const GaussRule rule = gauss_rule(n_gauss);
-  const auto of_others = [&](std::size_t q)
-  {
-    const double s = panel.begin + rule.points[q] * (panel.end - panel.begin);
-    return SymTensor(stress[first + q] - own(line.start + s * (line.end - line.start)));
-  };
-  SegmentForces force = quadrature(line, panel, of_others);
+  SegmentForces force =
+      quadrature(system.lines()[i], panel, [&](std::size_t q) -> const SymTensor & { return stress[first + q]; });
   replace_near(i, panel, force);
   return force;
 }
 
-std::vector<fmm::LineSource> MultipoleForces::near_sources(const std::size_t i, const Vec3 &start,
+MultipoleForces::NearSources MultipoleForces::near_sources(const std::size_t i, const Vec3 &start,
                                                            const Vec3 &end) const
 {
   const fmm::Octree &tree = multipoles->sum().octree();
   const Vec3 middle = 0.5 * (start + end);
   const double half = 0.5 * (end - start).norm(), reach = near_distance * half;
-  std::vector<fmm::LineSource> near;
-  tree.for_each_line_near(middle, reach + half,
-                          [&](const std::uint32_t k, const std::size_t image)
-                          {
-                            fmm::LineSource source = multipoles->sum().lines()[k];
-                            source.start += tree.image_shifts()[image];
-                            source.end += tree.image_shifts()[image];
-                            // Of the images of the line itself, the one that the panel lies on.
-                            if (tree.line_order()[k] == i &&
-                                distance_point_segment(middle, source.start, source.end).squared < 1e-12 * half * half)
-                              return;
-                            if (distance_segment_segment(source.start, source.end, start, end).squared < reach * reach)
-                              near.push_back(source);
-                          });
+  NearSources near;
+  tree.for_each_line_near(
+      middle, reach + half,
+      [&](const std::uint32_t k, const std::size_t image)
+      {
+        const fmm::LineSource &source = multipoles->sum().lines()[k];
+        const Vec3 x1 = source.start + tree.image_shifts()[image], x2 = source.end + tree.image_shifts()[image];
+        if (distance_segment_segment(x1, x2, start, end).squared > reach * reach)
+          return;
+        // Of the images of the line itself, the one that the panel lies on.
+        if (tree.line_order()[k] == i && distance_point_segment(middle, x1, x2).squared < 1e-12 * half * half)
+          near.itself = near.table.size();
+        near.table.add_segment(x1, x2, source.burgers);
+      });
   return near;
 }
 
@@ -145,19 +139,16 @@ void MultipoleForces::replace_near(const std::size_t i, const Panel &panel, Segm
   const Vec3 t = line.end - line.start, middle = line.start + 0.5 * (panel.begin + panel.end) * t;
   const Vec3 shift = system.cell() ? system.cell()->shift_into_cell(middle) : Vec3(Vec3::Zero());
   const Vec3 start = line.start + shift + panel.begin * t, end = line.start + shift + panel.end * t;
+  const NearSources near = near_sources(i, start, end);
   // What the sources have added at the Gauss points, and what they should have added.
-  std::vector<SymTensor> added(static_cast<std::size_t>(n_gauss), SymTensor::Zero());
-  SegmentForces exact;
   const GaussRule rule = gauss_rule(n_gauss);
-  for (const fmm::LineSource &source : near_sources(i, start, end))
-  {
-    const SegmentStressField field(system.medium(), source.start, source.end, source.burgers);
-    for (std::size_t q = 0; q < added.size(); ++q)
-      added[q] += field(start + rule.points[q] * (end - start));
-    exact += segment_force(system.medium(), source.start, source.end, source.burgers, start, end, line.burgers,
-                           pair_tolerance);
-  }
-  const SegmentForces wrong = quadrature(line, panel, [&](std::size_t q) -> const SymTensor & { return added[q]; });
+  StressBuffer added(rule.points.size());
+  for (std::size_t q = 0; q < rule.points.size(); ++q)
+    added.set_point(q, Vec3(start + rule.points[q] * (end - start)));
+  add_segment_stress(system.medium(), near.table, added.batch());
+  const SegmentForces wrong = quadrature(line, panel, [&](std::size_t q) { return added.stress(q); });
+  const SegmentForces exact =
+      force_of_segments(system.medium(), near.table, start, end, line.burgers, pair_tolerance, near.itself);
   // Linear shape functions of the panel's ends, in those of the line's.
   force.start += (1 - panel.begin) * exact.start + (1 - panel.end) * exact.end - wrong.start;
   force.end += panel.begin * exact.start + panel.end * exact.end - wrong.end;
