@@ -62,6 +62,18 @@ void evaluate(const Recurrence &factor, int order, const Row *points, Row *s)
     raise_degree(factor, order, m, -1, z, r2, s);
   }
 }
+/// Adds weight a_i b_j to the two blocks of degree @p l; returns the end of the blocks.
+double *add_products(const int l, const double weight, const double *a, const double *b, double *entry)
+{
+  for (const int sign : {1, -1})
+    for (int row = (1 - sign) / 2; row <= l; ++row)
+    {
+      const double factor = weight * a[harmonic_index(l, sign * row)];
+      for (int column = (1 - sign) / 2; column <= l; ++column)
+        *entry++ += factor * b[harmonic_index(l, sign * column)];
+    }
+  return entry;
+}
 } // namespace
 
 void regular_harmonics(const int order, const Row *points, Row *values)
@@ -112,38 +124,35 @@ std::array<std::vector<GradientTerm>, 3> gradient_terms(const int order)
 std::vector<double> rotation_about_y(const int order, const double cos_theta, const double sin_theta)
 {
   // D_ij = (2l+1)/(4 pi) int C_i(R u) C_j(u) du over the sphere, by a product rule that is exact to rounding for polynomials
-  // of degree 2 order: simple, and stable at any order. Two Gauss rules, of -1 < z < 0 and 0 < z < 1.
-  std::vector<double> blocks;
-  std::vector<std::size_t> begin;
+  // of degree 2 order: simple, and stable at any order. Two Gauss rules, of -1 < z < 0 and 0 < z < 1, reach orders that one
+  // of max_gauss_points does not.
   std::size_t size = 0;
   for (int l = 0; l <= order; ++l)
-  {
-    begin.push_back(size);
     size += static_cast<std::size_t>((l + 1) * (l + 1) + l * l);
-  }
-  blocks.assign(size, 0.0);
+  std::vector<double> blocks(size, 0.0);
+  // The integrand is even in y: half the circle.
   const GaussRule rule = gauss_rule(std::min(order + 1, max_gauss_points));
   const int n_phi = 2 * order + 1;
-  RowBuffer harmonics(n_harmonics(order));
+  const std::size_t n = n_harmonics(order);
+  RowBuffer harmonics(n);
+  std::vector<double> at_u(n), at_image(n);
   for (std::size_t k = 0; k < 2 * rule.points.size(); ++k)
-    for (int j = 0; j < n_phi; ++j)
+    for (int j = 0; j <= order; ++j)
     {
       const double z = (k % 2 == 0 ? 1 : -1) * rule.points[k / 2], rho = std::sqrt(1 - z * z);
       const double phi = 2 * std::numbers::pi * j / n_phi, x = rho * std::cos(phi), y = rho * std::sin(phi);
       // Lane 0 holds u, lane 1 holds R u.
       const Row points[3] = {Row{x, cos_theta * x - sin_theta * z}, Row{y, y}, Row{z, sin_theta * x + cos_theta * z}};
       regular_harmonics(order, points, harmonics.rows());
-      for (int l = 0; l <= order; ++l)
+      for (std::size_t h = 0; h < n; ++h)
       {
-        double *entry = &blocks[begin[static_cast<std::size_t>(l)]];
-        const double weight = 0.5 * (2 * l + 1) * rule.weights[k / 2] / n_phi;
-        for (int row = 0; row <= l; ++row)
-          for (int column = 0; column <= l; ++column)
-            *entry++ += weight * harmonics(harmonic_index(l, row), 1) * harmonics(harmonic_index(l, column), 0);
-        for (int row = 1; row <= l; ++row)
-          for (int column = 1; column <= l; ++column)
-            *entry++ += weight * harmonics(harmonic_index(l, -row), 1) * harmonics(harmonic_index(l, -column), 0);
+        at_u[h] = harmonics(h, 0);
+        at_image[h] = harmonics(h, 1);
       }
+      const double weight = (j == 0 ? 0.5 : 1.0) * rule.weights[k / 2] / n_phi;
+      double *entry = blocks.data();
+      for (int l = 0; l <= order; ++l)
+        entry = add_products(l, (2 * l + 1) * weight, at_image.data(), at_u.data(), entry);
     }
   return blocks;
 }

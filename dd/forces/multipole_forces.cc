@@ -13,8 +13,9 @@ namespace
 {
 /// Sources nearer than this many half lengths of a panel are replaced, approximately; the number of Gauss points follows.
 constexpr double typical_near_distance = 4.5;
-/// The error of quadrature is relative to the sources near the panel, which are some five times the far field.
-constexpr double near_to_far = 5;
+/// The error of quadrature is relative to the sources near the panel, which are some five times the far field; the rest is
+/// margin for the errors of several sources of one panel.
+constexpr double near_to_far = 7;
 
 double bernstein_radius(const double distance)
 {
