@@ -1,14 +1,14 @@
-// Nodal forces of a random network by the fast multipole method: time of the phases, and the error on sampled segments.
+// Nodal forces of a random network by the fast multipole method: processor time of the phases, and the error on sampled segments.
 //
 //   far_field TOLERANCE PAIR_TOLERANCE COST_FACTOR N_SAMPLES N_SEGMENTS...
 #include "dd/elasticity/gauss.h"
 #include "dd/forces/multipole_field.h"
 
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <numbers>
 #include <random>
 #include <sys/resource.h>
@@ -50,9 +50,10 @@ Network random_loops(const std::size_t n_segments)
   return network;
 }
 
+/// Processor time, summed over threads.
 double seconds()
 {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 Vec3 direct_force(const LineSystem &system, const std::size_t i)

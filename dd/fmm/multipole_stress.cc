@@ -4,8 +4,8 @@
 #include "dd/fmm/grids_and_rays.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 
 namespace ddfem::fmm
@@ -15,18 +15,18 @@ namespace
 /// Boxes whose translations are sorted by direction together; the unit of work of a thread.
 constexpr std::uint32_t boxes_per_chunk = 64;
 
-/// Adds the time of a scope to a phase.
+/// Adds the processor time of a scope to a phase.
 class Stopwatch
 {
 public:
   explicit Stopwatch(double &phase_) : phase(phase_) {}
   Stopwatch(const Stopwatch &) = delete;
   Stopwatch &operator=(const Stopwatch &) = delete;
-  ~Stopwatch() { phase += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+  ~Stopwatch() { phase += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC; }
 
 private:
   double &phase;
-  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  std::clock_t start = std::clock();
 };
 
 TreeSettings tree_settings(const IsotropicMedium &medium, const MultipoleSettings &settings, const int order)

@@ -28,7 +28,7 @@ private:
   std::vector<double> q_;
 };
 
-/// Wall-clock times of the phases on this rank, s.
+/// Processor time of the phases on this rank, summed over its threads, s.
 struct PhaseTimes
 {
   double upward = 0, translations = 0, downward = 0, points = 0, near = 0;

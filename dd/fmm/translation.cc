@@ -45,33 +45,53 @@ std::pair<Blocks, Blocks> rotation_pair(const int order, const double cos_theta,
   return entry;
 }
 
+/// sqrt(n!), up to the largest sum of two degrees.
+struct RootFactorials
+{
+  std::array<double, 2 * max_order + 1> value{1.0};
+
+  RootFactorials()
+  {
+    for (std::size_t n = 1; n < value.size(); ++n)
+      value[n] = value[n - 1] * std::sqrt(static_cast<double>(n));
+  }
+};
+
+double root_factorial(const int n)
+{
+  static const RootFactorials known;
+  return known.value[static_cast<std::size_t>(n)];
+}
+
 double factorial(const int n)
 {
-  return std::tgamma(n + 1.0);
+  return root_factorial(n) * root_factorial(n);
 }
 
 /// The normalisation sqrt((l-m)! (l+m)!) that turns r^l P_l^m/(l+m)! into r^l C_lm.
 double norm(const int l, const int m)
 {
-  return std::sqrt(factorial(l - m) * factorial(l + m));
+  return root_factorial(l - m) * root_factorial(l + m);
 }
 
-/// Element (to, from) of the translation by @p d along z (Greengard & Rokhlin 1997, eqs. 5.13-5.15, renormalised).
-double axial_element(const Shift kind, const int m, const int to, const int from, const double d)
+/// Element (to, from) of the translation along z (Greengard & Rokhlin 1997, eqs. 5.13-5.15, renormalised). @p power: of the
+/// distance, or of its inverse for Shift::far.
+double axial_element(const Shift kind, const int m, const int to, const int from, const std::vector<double> &power)
 {
+  const auto power_of = [&](int n) { return power[static_cast<std::size_t>(n)]; };
   switch (kind)
   {
     case Shift::far:
       return ((m + to) % 2 == 0 ? 1.0 : -1.0) * factorial(to + from) / (norm(to, m) * norm(from, m)) *
-             std::pow(d, -(to + from + 1));
+             power_of(to + from + 1);
     case Shift::child_to_parent:
       return from > to
                  ? 0.0
-                 : norm(to, m) / (norm(from, m) * factorial(to - from)) * std::pow(d, to - from) * std::pow(0.5, from);
+                 : norm(to, m) / (norm(from, m) * factorial(to - from)) * power_of(to - from) * std::ldexp(1.0, -from);
     case Shift::parent_to_child:
       return from < to ? 0.0
-                       : norm(from, m) / (norm(to, m) * factorial(from - to)) * std::pow(d, from - to) *
-                             std::pow(0.5, to + 1);
+                       : norm(from, m) / (norm(to, m) * factorial(from - to)) * power_of(from - to) *
+                             std::ldexp(1.0, -to - 1);
   }
   return 0.0;
 }
@@ -228,10 +248,13 @@ Translation::Translation(const Shift kind, const int order, const Vec3 &vector) 
     phase.push_back(std::sin(m * phi));
   }
   std::tie(rotation, backward) = rotation_pair(order, vector[2] / d, std::hypot(vector[0], vector[1]) / d);
+  std::vector<double> power{1.0};
+  for (int n = 0; n <= 2 * order; ++n)
+    power.push_back(power.back() * (kind == Shift::far ? 1 / d : d));
   for (int m = 0; m <= order; ++m)
     for (int to = m; to <= order; ++to)
       for (int from = m; from <= order; ++from)
-        axial.push_back(axial_element(kind, m, to, from, d));
+        axial.push_back(axial_element(kind, m, to, from, power));
 }
 
 void Translation::add(const Row *source, Row *target) const
