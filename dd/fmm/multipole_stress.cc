@@ -75,7 +75,8 @@ struct ShiftedBatch
 
 std::size_t octant_of(const Box &box)
 {
-  return static_cast<std::size_t>((box.place[0] & 1) + 2 * (box.place[1] & 1) + 4 * (box.place[2] & 1));
+  const int octant = (box.place[0] & 1) + 2 * (box.place[1] & 1) + 4 * (box.place[2] & 1);
+  return static_cast<std::size_t>(octant);
 }
 } // namespace
 
@@ -112,7 +113,8 @@ void MultipoleStress::make_translations(const RootGrid &grid)
   const Vec3 edges = grid.edges / grid.edges.maxCoeff();
   for (int k = 0; k < 8; ++k)
   {
-    const Vec3 to_child_centre = 0.25 * edges.cwiseProduct(Vec3(k % 2 * 2 - 1, k / 2 % 2 * 2 - 1, k / 4 * 2 - 1));
+    const auto side = [k](int axis) { return (k >> axis & 1) != 0 ? 0.25 : -0.25; };
+    const Vec3 to_child_centre = edges.cwiseProduct(Vec3(side(0), side(1), side(2)));
     to_parent.emplace_back(Shift::child_to_parent, expansion_order_, to_child_centre);
     to_child.emplace_back(Shift::parent_to_child, expansion_order_, to_child_centre);
   }
@@ -120,8 +122,8 @@ void MultipoleStress::make_translations(const RootGrid &grid)
     for (const FarLink &l : tree.far_links(root))
       for (const std::int16_t o : l.offset)
         largest_offset = std::max(largest_offset, std::abs(o));
-  const int n = 2 * largest_offset + 1;
-  far_number.assign(static_cast<std::size_t>(n * n * n), std::numeric_limits<std::uint32_t>::max());
+  const int n = 2 * largest_offset + 1, volume = n * n * n;
+  far_number.assign(static_cast<std::size_t>(volume), std::numeric_limits<std::uint32_t>::max());
   for (std::size_t box = 0; box < tree.boxes().size(); ++box)
     for (const FarLink &l : tree.far_links(box))
     {

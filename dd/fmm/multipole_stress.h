@@ -8,7 +8,7 @@
 #include <mpi.h>
 
 #include <array>
-#include <compare>
+#include <tuple>
 #include <vector>
 
 namespace ddfem::fmm
@@ -77,7 +77,10 @@ private:
   struct Task
   {
     std::uint32_t translation, target, source;
-    auto operator<=>(const Task &) const = default;
+    bool operator<(const Task &o) const
+    {
+      return std::tie(translation, target, source) < std::tie(o.translation, o.target, o.source);
+    }
   };
 
   void make_translations(const RootGrid &grid);

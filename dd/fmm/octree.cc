@@ -47,7 +47,10 @@ Octree::Octree(const RootGrid &grid_, const std::span<const LineSource> lines, c
   if (grid.periodic)
     for (int k = 0; k < 27; ++k)
       if (k != 13)
-        shifts.emplace_back(period.cwiseProduct(Vec3(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1)));
+      {
+        const int i = k / 9 - 1, j = k / 3 % 3 - 1, l = k % 3 - 1;
+        shifts.emplace_back(period.cwiseProduct(Vec3(i, j, l)));
+      }
   sort_into_roots(lines, points);
   Neighbours neighbours(all.size());
   pair_roots(neighbours);
@@ -94,7 +97,8 @@ void Octree::sort_into_roots(const std::span<const LineSource> lines, const std:
     }
     return k;
   };
-  const auto n_roots = static_cast<std::size_t>(grid.n[0] * grid.n[1] * grid.n[2]);
+  const int volume = grid.n[0] * grid.n[1] * grid.n[2];
+  const auto n_roots = static_cast<std::size_t>(volume);
   const auto line_limits = sort_by_key(line_at, 0, static_cast<std::uint32_t>(lines.size()), n_roots,
                                        [&](std::uint32_t i) { return root_of(line_middle[i]); });
   const auto point_limits = sort_by_key(point_at, 0, static_cast<std::uint32_t>(points.size()), n_roots,
@@ -134,9 +138,8 @@ void Octree::pair_roots(Neighbours &neighbours)
 
 double Octree::translation_cost(const std::array<std::int16_t, 3> &offset) const
 {
-  const auto distance2 =
-      static_cast<std::size_t>(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]);
-  return settings.translation_cost[std::min(distance2, settings.translation_cost.size() - 1)];
+  const int distance2 = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
+  return settings.translation_cost[std::min(static_cast<std::size_t>(distance2), settings.translation_cost.size() - 1)];
 }
 
 bool Octree::is_worth_dividing(const std::size_t box, const std::vector<Neighbour> &neighbours) const

@@ -22,13 +22,15 @@ inline constexpr int max_order = 34;
 /// Number of harmonics of degree 0 to @p order.
 constexpr std::size_t n_harmonics(int order)
 {
-  return static_cast<std::size_t>((order + 1) * (order + 1));
+  const auto n = static_cast<std::size_t>(order + 1);
+  return n * n;
 }
 
 /// Position of S_lm, -l <= m <= l.
 constexpr std::size_t harmonic_index(int l, int m)
 {
-  return static_cast<std::size_t>(l * l + l + m);
+  const int position = l * l + l + m;
+  return static_cast<std::size_t>(position);
 }
 
 /// Values of all harmonics up to @p order at eight points: @p points holds the rows x, y, z; @p values gets n_harmonics()
