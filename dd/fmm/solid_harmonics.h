@@ -22,7 +22,7 @@ inline constexpr int max_order = 34;
 /// Number of harmonics of degree 0 to @p order.
 constexpr std::size_t n_harmonics(int order)
 {
-  const auto n = static_cast<std::size_t>(order + 1);
+  const auto n = static_cast<std::size_t>(order) + 1;
   return n * n;
 }
 
