@@ -13,6 +13,7 @@ int expansion_order(double tolerance);
 /// have at @p order.
 int order_at_distance(int order, double distance);
 
-/// Cost of a translation of given order in evaluations of a segment at a point: measured on one core with AVX-512. A constant, so that the tree and all results are the same in every run.
+/// Cost of a translation of given order in evaluations of a segment at a point: measured on one core with AVX-512.
+/// A constant, so that the tree and all results are the same in every run.
 double translation_cost(int order);
 } // namespace ddfem::fmm
