@@ -57,7 +57,7 @@ int guarded(const std::function<int()> &command)
 struct Options
 {
   InputArguments input;
-  std::string directory = "results", format = "prm", points, output;
+  std::string directory = "results", format = "prm", points, output, method;
   unsigned threads = 0;
 };
 
@@ -70,6 +70,11 @@ void add_input(CLI::App &command, Options &o)
   command.add_option("--threads", o.threads, "OpenMP threads per process");
 }
 
+void add_method(CLI::App &command, Options &o)
+{
+  command.add_option("--method", o.method, "sum of the lines: direct or fmm; without it, that of the input")
+      ->check(CLI::IsMember({"direct", "fmm"}));
+}
 } // namespace
 
 int main(int argc, char **argv)
@@ -92,9 +97,11 @@ int main(int argc, char **argv)
   add_input(*field, o);
   field->add_option("--points", o.points, "CSV with columns x,y,z in m")->required();
   field->add_option("-o,--output", o.output, "CSV to write")->required();
+  add_method(*field, o);
   auto *forces = app.add_subcommand("forces", "nodal forces of the initial state by contribution");
   add_input(*forces, o);
   forces->add_option("-o,--output", o.output, "CSV to write")->required();
+  add_method(*forces, o);
 
   try
   {
@@ -106,6 +113,8 @@ int main(int argc, char **argv)
   }
   if (parameters->parsed())
     return parameters_command(o.format);
+  if (!o.method.empty())
+    o.input.assignments.emplace_back(o.method == "fmm" ? "Forces/Summation=multipole" : "Forces/Summation=direct");
 
   // deal.II sets the number of OpenMP threads to its own limit, so it is told what OpenMP would have used.
   const unsigned threads = o.threads > 0 ? o.threads : static_cast<unsigned>(omp_get_max_threads());

@@ -103,11 +103,15 @@ struct Parameters
   TopologySettings topology;
   double core_cutoff_radius = 0; ///< nm
   double pair_tolerance = 0;
+  SummationSettings summation;
   IntegratorSettings integrator;
   StopCriteria stop;
   OutputParameters output;
 
-  ForceSettings force_settings() const { return {medium, core_cutoff_radius, pair_tolerance, grain.ray_direction}; }
+  ForceSettings force_settings() const
+  {
+    return {medium, core_cutoff_radius, pair_tolerance, grain.ray_direction, summation};
+  }
   SlipSystems slip_systems() const { return {lattice, lattice_parameter, orientation, slip}; }
 };
 

@@ -282,7 +282,11 @@ NodalForces Simulation::forces()
 
 std::vector<SymTensor> Simulation::infinite_stress(const std::vector<Vec3> &points)
 {
-  return line_system().stress(points);
+  const LineSystem lines = line_system();
+  const SummationSettings &summation = parameters.summation;
+  return summation.use_multipoles(lines.lines().size())
+             ? MultipoleField(lines, points, {summation.tolerance}).stress(communicator)
+             : lines.stress(points);
 }
 
 std::vector<SymTensor> Simulation::correction_stress(const std::vector<Vec3> &points) const

@@ -5,6 +5,8 @@
 #include "dd/elasticity/self_force.h"
 #include "dd/elasticity/vectorised/force_kernels.h"
 
+#include <optional>
+
 namespace ddfem
 {
 namespace
@@ -47,21 +49,11 @@ template <class StressAtPoint> SegmentForces force_of_smooth_field(const Straigh
   return force_of_field(line, rule.points, rule.weights, stress);
 }
 
-/// All contributions to the ends of segment number @p i.
-Contributions segment_contributions(const LineSystem &system, const std::size_t i, const ForceSettings &settings,
-                                    const ForceEnvironment &environment)
+/// Forces of lines, rays and images on segment number @p i, pair by pair.
+void add_line_forces(const LineSystem &system, const std::size_t i, const ForceSettings &settings, Contributions &c)
 {
-  Contributions c;
-  c.fill({Vec3::Zero(), Vec3::Zero()});
   const StraightLine &line = system.lines()[i];
   const auto &medium = settings.medium;
-
-  slot(c, ForceContribution::applied) =
-      force_of_smooth_field(line, [&](std::size_t, const Vec3 &) -> const SymTensor & { return environment.applied; });
-  slot(c, ForceContribution::self) = self_force(medium, line.start, line.end, line.burgers);
-  slot(c, ForceContribution::core) =
-      core_force(medium, CoreEnergy{settings.core_cutoff_radius}, line.start, line.end, line.burgers);
-
   for (std::size_t k = 0; k < system.image_shifts().size(); ++k)
   {
     const Vec3 &shift = system.image_shifts()[k];
@@ -74,6 +66,26 @@ Contributions segment_contributions(const LineSystem &system, const std::size_t 
   if (system.far_images())
     slot(c, ForceContribution::images) +=
         force_of_smooth_field(line, [&](std::size_t, const Vec3 &x) { return system.far_images()->far_stress(x); });
+}
+
+/// All contributions to the ends of segment number @p i.
+Contributions segment_contributions(const LineSystem &system, const std::size_t i, const ForceSettings &settings,
+                                    const ForceEnvironment &environment, const MultipoleForces *multipoles)
+{
+  Contributions c;
+  c.fill({Vec3::Zero(), Vec3::Zero()});
+  const StraightLine &line = system.lines()[i];
+  const auto &medium = settings.medium;
+
+  slot(c, ForceContribution::applied) =
+      force_of_smooth_field(line, [&](std::size_t, const Vec3 &) -> const SymTensor & { return environment.applied; });
+  slot(c, ForceContribution::self) = self_force(medium, line.start, line.end, line.burgers);
+  slot(c, ForceContribution::core) =
+      core_force(medium, CoreEnergy{settings.core_cutoff_radius}, line.start, line.end, line.burgers);
+  if (multipoles)
+    slot(c, ForceContribution::pairs) = (*multipoles)(i);
+  else
+    add_line_forces(system, i, settings, c);
   if (const SegmentField *const field = environment.correction; field && field->points.n_segments() > 0)
     slot(c, ForceContribution::correction) = force_of_field(line, field->points.fractions(i), field->points.weights(i),
                                                             [&](const std::size_t q, const Vec3 &) -> const SymTensor &
@@ -110,11 +122,14 @@ NodalForces compute_nodal_forces(const Network &network, const ForceSettings &se
 {
   const LineSystem system(settings.medium, network, environment.shape, settings.ray_direction, environment.cell,
                           environment.images);
+  std::optional<MultipoleForces> multipoles;
+  if (settings.summation.use_multipoles(system.lines().size()))
+    multipoles.emplace(system, fmm::MultipoleSettings{settings.summation.tolerance}, settings.pair_tolerance, comm);
   std::vector<Contributions> by_line(system.lines().size());
   const IndexRange owned = owned_range(by_line.size(), comm);
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t i = owned.begin; i < owned.end; ++i)
-    by_line[i] = segment_contributions(system, i, settings, environment);
+    by_line[i] = segment_contributions(system, i, settings, environment, multipoles ? &*multipoles : nullptr);
   gather_owned(by_line, comm);
 
   NodalForces forces;

@@ -3,6 +3,7 @@
 
 #include "dd/elasticity/segment_force.h"
 #include "dd/forces/line_system.h"
+#include "dd/forces/multipole_field.h"
 #include "dd/forces/segment_points.h"
 
 #include <mpi.h>
@@ -34,6 +35,7 @@ struct ForceSettings
   /// Error of a pair's nodal forces relative to their largest component.
   double pair_tolerance = 1e-5;
   RayDirection ray_direction = RayDirection::normal;
+  SummationSettings summation = {};
 };
 
 /// External fields and surroundings of the network.
@@ -55,7 +57,8 @@ struct NodalForces
   std::vector<SegmentForces> segment_ends;
 };
 
-/// Computes the nodal forces by direct summation over all pairs. The work is divided among the ranks of @p comm and
+/// Computes the nodal forces, by direct summation over all pairs or, with many segments, by fast multipoles; in the second
+/// case the forces of rays and images are part of ForceContribution::pairs. The work is divided among the ranks of @p comm and
 /// the threads; every force is a sum in fixed order, so the result is bitwise the same on any number of either.
 NodalForces compute_nodal_forces(const Network &network, const ForceSettings &settings,
                                  const ForceEnvironment &environment, MPI_Comm comm, bool with_contributions = false);

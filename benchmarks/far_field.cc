@@ -1,0 +1,172 @@
+// Nodal forces of a random network by the fast multipole method: processor time of the phases, and the error on sampled segments.
+//
+//   far_field TOLERANCE PAIR_TOLERANCE COST_FACTOR N_SAMPLES N_SEGMENTS...
+#include "dd/elasticity/gauss.h"
+#include "dd/forces/multipole_field.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <numbers>
+#include <random>
+#include <sys/resource.h>
+
+namespace
+{
+using namespace ddfem;
+
+const IsotropicMedium medium{50e3, 0.34, 0.3};
+constexpr int segments_per_loop = 16;
+constexpr double radius = 65;                     // nm
+constexpr double volume_per_segment = 1e9 / 1600; // nm^3: 4e13 per m^2
+
+Network random_loops(const std::size_t n_segments)
+{
+  std::mt19937 random(1);
+  const auto vector = [&]
+  {
+    std::uniform_real_distribution<double> u(-1, 1);
+    const double x = u(random), y = u(random), z = u(random);
+    return Vec3(x, y, z);
+  };
+  const double half = 0.5 * std::cbrt(volume_per_segment * static_cast<double>(n_segments));
+  Network network;
+  for (std::size_t k = 0; k < n_segments / segments_per_loop; ++k)
+  {
+    const Vec3 centre = half * vector(), e1 = vector().normalized(), e2 = e1.unitOrthogonal();
+    const Vec3 b = 0.25 * vector().normalized();
+    std::vector<NodeIndex> nodes;
+    for (int i = 0; i < segments_per_loop; ++i)
+    {
+      const double angle = 2 * std::numbers::pi * i / segments_per_loop;
+      nodes.push_back(network.insert({centre + radius * (std::cos(angle) * e1 + std::sin(angle) * e2)}));
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      network.insert(Segment{nodes[i], nodes[(i + 1) % nodes.size()], b, {}});
+  }
+  network.clean();
+  return network;
+}
+
+/// Processor time, summed over threads.
+double seconds()
+{
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+Vec3 direct_force(const LineSystem &system, const std::size_t i)
+{
+  const StraightLine &l = system.lines()[i];
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t j = 0; j < system.lines().size(); ++j)
+    if (const StraightLine &s = system.lines()[j]; j != i)
+    {
+      const SegmentForces f = segment_force(medium, s.start, s.end, s.burgers, l.start, l.end, l.burgers, 1e-8);
+      sum += f.start + f.end;
+    }
+  return sum;
+}
+
+/// Root mean square of the force of the far stress alone on a segment.
+double far_force(const LineSystem &system, const double tolerance)
+{
+  std::vector<Vec3> middles;
+  for (const StraightLine &l : system.lines())
+    middles.emplace_back(0.5 * (l.start + l.end));
+  MultipoleField field(system, middles, {tolerance});
+  const auto far = field.sum().stress(MPI_COMM_SELF, fmm::MultipoleStress::Part::far);
+  double sum = 0;
+  for (std::size_t i = 0; i < far.size(); ++i)
+  {
+    const StraightLine &l = system.lines()[i];
+    sum += contract(far[i], l.burgers).cross(l.end - l.start).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(far.size()));
+}
+
+void print_errors(const LineSystem &system, const MultipoleForces &forces, const double tolerance,
+                  const std::size_t n_samples)
+{
+  double error = 0, largest = 0, total = 0;
+  for (std::size_t k = 0; k < n_samples; ++k)
+  {
+    const std::size_t i = k * system.lines().size() / n_samples;
+    const SegmentForces f = forces(i);
+    const Vec3 exact = direct_force(system, i);
+    const double d = (f.start + f.end - exact).squaredNorm();
+    error += d;
+    largest = std::max(largest, d);
+    total += exact.squaredNorm();
+  }
+  const auto n = static_cast<double>(n_samples);
+  const double far = far_force(system, tolerance), rms = std::sqrt(total / n);
+  std::printf("  force error: rms %.2e, largest %.2e of the far force; rms %.2e, largest %.2e of the total\n",
+              std::sqrt(error / n) / far, std::sqrt(largest) / far, std::sqrt(error / n) / rms,
+              std::sqrt(largest) / rms);
+}
+
+/// Evaluations of a segment at a point, and translations between boxes.
+std::array<double, 2> counts(const fmm::Octree &tree)
+{
+  double pairs = 0, translations = 0;
+  for (std::size_t i = 0; i < tree.boxes().size(); ++i)
+  {
+    translations += static_cast<double>(tree.far_links(i).size());
+    for (const fmm::NearLink &l : tree.near_links(i))
+    {
+      const fmm::Box &b = tree.boxes()[l.box];
+      const std::size_t n_lines = (l.own_only ? b.own_lines_end : b.lines_end) - b.lines_begin;
+      pairs += static_cast<double>(n_lines * tree.boxes()[i].n_points());
+    }
+  }
+  return {pairs, translations};
+}
+
+void measure(const std::size_t n, const double tolerance, const double pair_tolerance, const double factor,
+             const std::size_t n_samples)
+{
+  const Network network = random_loops(n);
+  const LineSystem system(medium, network, nullptr, RayDirection::normal, nullptr, nullptr);
+  const double start = seconds();
+  const MultipoleForces forces(system, {tolerance, 0, factor}, pair_tolerance, MPI_COMM_SELF);
+  const double middle = seconds();
+  std::vector<SegmentForces> result(system.lines().size());
+#pragma omp parallel for schedule(dynamic, 64)
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = forces(i);
+  const double end = seconds();
+  const fmm::MultipoleStress &sum = forces.field().sum();
+  const fmm::PhaseTimes &t = sum.times();
+  const double phases = t.upward + t.translations + t.downward + t.points + t.near;
+  std::printf(
+      "%8zu segments, order %2d, %zu boxes on %zu levels: tree %.3f, upward %.3f, translations %.3f, downward %.3f, "
+      "far at points %.3f, near at points %.3f, close pairs %.3f s; total %.3f s, %.2f us per segment\n",
+      n, sum.order(), sum.octree().boxes().size(), sum.octree().levels().size() - 1, middle - start - phases, t.upward,
+      t.translations, t.downward, t.points, t.near, end - middle, end - start,
+      1e6 * (end - start) / static_cast<double>(n));
+  const auto [pairs, translations] = counts(sum.octree());
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf("  %.1f ns per near pair (%.0f M), %.2f us per translation (%.0f k); largest memory so far %.0f bytes "
+              "per segment\n",
+              1e9 * t.near / pairs, 1e-6 * pairs, 1e6 * t.translations / translations, 1e-3 * translations,
+              1024.0 * static_cast<double>(usage.ru_maxrss) / static_cast<double>(n));
+  if (n_samples > 0)
+    print_errors(system, forces, tolerance, n_samples);
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  if (argc < 6)
+  {
+    std::fprintf(stderr, "usage: %s TOLERANCE PAIR_TOLERANCE COST_FACTOR N_SAMPLES N_SEGMENTS...\n", argv[0]);
+    return 2;
+  }
+  for (int k = 5; k < argc; ++k)
+    measure(std::strtoul(argv[k], nullptr, 10), std::atof(argv[1]), std::atof(argv[2]), std::atof(argv[3]),
+            std::strtoul(argv[4], nullptr, 10));
+  return 0;
+}

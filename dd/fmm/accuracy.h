@@ -1,0 +1,19 @@
+// From the requested error to the order of the expansions.
+#pragma once
+
+#include <vector>
+
+namespace ddfem::fmm
+{
+/// Order of the expansions for a requested error of the far stress, relative to its rms. @throws std::invalid_argument
+/// unless 1e-8 <= @p tolerance <= 0.1.
+int expansion_order(double tolerance);
+
+/// Order that boxes at @p distance (between centres, in box sizes, at least 2) need for the error that boxes at distance 2
+/// have at @p order.
+int order_at_distance(int order, double distance);
+
+/// Cost of a translation of given order in evaluations of a segment at a point: measured on one core with AVX-512.
+/// A constant, so that the tree and all results are the same in every run.
+double translation_cost(int order);
+} // namespace ddfem::fmm

@@ -1,0 +1,66 @@
+#include "dd/fmm/grids_and_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ddfem::fmm
+{
+RootGrid enclosing_grid(const std::span<const LineSource> lines, const std::span<const RaySource> rays,
+                        const std::span<const Vec3> points)
+{
+  Eigen::AlignedBox3d box;
+  for (const LineSource &l : lines)
+    box.extend(0.5 * (l.start + l.end));
+  for (const RaySource &r : rays)
+    box.extend(r.origin);
+  for (const Vec3 &p : points)
+    box.extend(p);
+  if (box.isEmpty())
+    return {};
+  // A little wider, so that rounding leaves no point outside.
+  const double width = std::max(box.sizes().maxCoeff() * (1 + 1e-9), 1e-9) * (rays.empty() ? 1 : 4);
+  return {box.center() - Vec3::Constant(0.5 * width), Vec3::Constant(width), {1, 1, 1}, false};
+}
+
+RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths)
+{
+  RootGrid grid{origin, lengths, {1, 1, 1}, true};
+  for (int k = 1; k <= 4; ++k) // boxes along the shortest edge: as few as make the boxes cubes to 15 %
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      const double n = std::round(lengths[c] / (lengths.minCoeff() / k));
+      grid.n[static_cast<std::size_t>(c)] = static_cast<int>(n);
+      grid.edges[c] = lengths[c] / n;
+    }
+    if (grid.edges.maxCoeff() < 1.15 * grid.edges.minCoeff())
+      break;
+  }
+  return grid;
+}
+
+std::vector<RaySource> cut_rays(const std::span<const RaySource> rays, const RootGrid &grid, const double shortest,
+                                std::vector<LineSource> &lines)
+{
+  std::vector<RaySource> distant;
+  for (const RaySource &r : rays)
+  {
+    double way = std::numeric_limits<double>::infinity(); // to the boundary of the root
+    for (int c = 0; c < 3; ++c)
+    {
+      const double wall = grid.origin[c] + (r.direction[c] > 0 ? grid.edges[c] : 0.0);
+      if (r.direction[c] != 0.0)
+        way = std::min(way, (wall - r.origin[c]) / r.direction[c]);
+    }
+    for (double t = 0; t < way;)
+    {
+      const double next = std::min(way, t + std::max(shortest, 0.25 * t));
+      lines.push_back({r.origin + t * r.direction, r.origin + next * r.direction, r.burgers});
+      t = next;
+    }
+    distant.push_back({r.origin + way * r.direction, r.direction, r.burgers});
+  }
+  return distant;
+}
+} // namespace ddfem::fmm

@@ -1,0 +1,26 @@
+// The root of the tree, and semi-infinite lines as its sources.
+#pragma once
+
+#include "dd/fmm/octree.h"
+
+#include <span>
+#include <vector>
+
+namespace ddfem::fmm
+{
+/// Level of the boxes that get the field of distant rays as one local expansion: all points lie in eight of them, at the centre
+/// of a root that is four times as wide as the body (see cut_rays()).
+inline constexpr int level_of_distant_rays = 3;
+
+/// Replaces @p rays by segments within @p grid, appended to @p lines, and what is left of each beyond it. Pieces have at least the
+/// length @p shortest (nm) and at most a quarter of the way from the origin of the ray: far pieces have no near points.
+std::vector<RaySource> cut_rays(std::span<const RaySource> rays, const RootGrid &grid, double shortest,
+                                std::vector<LineSource> &lines);
+
+/// Root grid of a periodic cell from @p origin with edges @p lengths (nm): boxes that are nearly cubes.
+RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths);
+
+/// Root cube around lines, rays' origins and points; four times as wide if there are rays.
+RootGrid enclosing_grid(std::span<const LineSource> lines, std::span<const RaySource> rays,
+                        std::span<const Vec3> points);
+} // namespace ddfem::fmm

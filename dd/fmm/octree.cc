@@ -1,0 +1,247 @@
+#include "dd/fmm/octree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+namespace ddfem::fmm
+{
+namespace
+{
+constexpr int deepest_level = 24;
+
+/// Sorts [begin, end) of @p order by key(index) in [0, n_keys), stable; returns the n_keys + 1 limits.
+template <class Key>
+std::vector<std::uint32_t> sort_by_key(std::vector<std::uint32_t> &order, const std::uint32_t begin,
+                                       const std::uint32_t end, const std::size_t n_keys, Key &&key)
+{
+  std::vector<std::uint32_t> limit(n_keys + 1, 0), keys, sorted(end - begin);
+  keys.reserve(end - begin);
+  for (std::uint32_t i = begin; i < end; ++i)
+  {
+    keys.push_back(static_cast<std::uint32_t>(key(order[i])));
+    ++limit[keys.back() + 1];
+  }
+  std::partial_sum(limit.begin(), limit.end(), limit.begin());
+  std::vector<std::uint32_t> next(limit.begin(), limit.end() - 1);
+  for (std::uint32_t i = begin; i < end; ++i)
+    sorted[next[keys[i - begin]]++] = order[i];
+  std::copy(sorted.begin(), sorted.end(), order.begin() + begin);
+  for (std::uint32_t &l : limit)
+    l += begin;
+  return limit;
+}
+
+int octant(const Vec3 &x, const Vec3 &centre)
+{
+  return (x[0] >= centre[0] ? 1 : 0) + (x[1] >= centre[1] ? 2 : 0) + (x[2] >= centre[2] ? 4 : 0);
+}
+} // namespace
+
+Octree::Octree(const RootGrid &grid_, const std::span<const LineSource> lines, const std::span<const Vec3> points,
+               const TreeSettings &settings_)
+    : grid(grid_), settings(settings_), shifts{Vec3::Zero()}
+{
+  const Vec3 period = grid.edges.cwiseProduct(Vec3(grid.n[0], grid.n[1], grid.n[2]));
+  if (grid.periodic)
+    for (int k = 0; k < 27; ++k)
+      if (k != 13)
+      {
+        const int i = k / 9 - 1, j = k / 3 % 3 - 1, l = k % 3 - 1;
+        shifts.emplace_back(period.cwiseProduct(Vec3(i, j, l)));
+      }
+  sort_into_roots(lines, points);
+  Neighbours neighbours(all.size());
+  pair_roots(neighbours);
+  while (level_begin.back() > level_begin[level_begin.size() - 2])
+  {
+    const std::size_t begin = level_begin[level_begin.size() - 2], end = level_begin.back();
+    for (std::size_t i = begin; i < end; ++i)
+      if (all[i].level < deepest_level && is_worth_dividing(i, neighbours[i - begin]))
+        divide(i);
+    level_begin.push_back(static_cast<std::uint32_t>(all.size()));
+    near.resize(all.size());
+    far.resize(all.size());
+    Neighbours next(all.size() - end);
+#pragma omp parallel for schedule(dynamic, 8)
+    for (std::size_t i = begin; i < end; ++i)
+      pair_children(i, neighbours[i - begin], next);
+    neighbours = std::move(next);
+  }
+  level_begin.pop_back(); // the last level is empty
+  for (const std::uint32_t i : line_at)
+    spheres.push_back({line_middle[i][0], line_middle[i][1], line_middle[i][2], 0.5 * line_length[i]});
+}
+
+void Octree::sort_into_roots(const std::span<const LineSource> lines, const std::span<const Vec3> points)
+{
+  for (const LineSource &l : lines)
+  {
+    line_middle.emplace_back(0.5 * (l.start + l.end));
+    line_length.push_back((l.end - l.start).norm());
+    longest_of_all = std::max(longest_of_all, line_length.back());
+  }
+  point.assign(points.begin(), points.end());
+  line_at.resize(lines.size());
+  point_at.resize(points.size());
+  std::iota(line_at.begin(), line_at.end(), 0U);
+  std::iota(point_at.begin(), point_at.end(), 0U);
+  const auto root_of = [&](const Vec3 &x)
+  {
+    int k = 0;
+    for (int c = 0; c < 3; ++c)
+    {
+      const int n = grid.n[static_cast<std::size_t>(c)];
+      k = k * n + std::clamp(static_cast<int>(std::floor((x[c] - grid.origin[c]) / grid.edges[c])), 0, n - 1);
+    }
+    return k;
+  };
+  const int volume = grid.n[0] * grid.n[1] * grid.n[2];
+  const auto n_roots = static_cast<std::size_t>(volume);
+  const auto line_limits = sort_by_key(line_at, 0, static_cast<std::uint32_t>(lines.size()), n_roots,
+                                       [&](std::uint32_t i) { return root_of(line_middle[i]); });
+  const auto point_limits = sort_by_key(point_at, 0, static_cast<std::uint32_t>(points.size()), n_roots,
+                                        [&](std::uint32_t i) { return root_of(point[i]); });
+  for (std::size_t k = 0; k < n_roots; ++k)
+  {
+    const int i = static_cast<int>(k);
+    Box box;
+    box.place = {i / (grid.n[1] * grid.n[2]), i / grid.n[2] % grid.n[1], i % grid.n[2]};
+    box.lines_begin = line_limits[k];
+    box.lines_end = box.own_lines_end = line_limits[k + 1];
+    box.points_begin = point_limits[k];
+    box.points_end = point_limits[k + 1];
+    all.push_back(box);
+  }
+  level_begin = {0, static_cast<std::uint32_t>(all.size())};
+  near.resize(all.size());
+  far.resize(all.size());
+}
+
+void Octree::pair_roots(Neighbours &neighbours)
+{
+  for (std::size_t target = 0; target < all.size(); ++target)
+    for (std::size_t image = 0; image < shifts.size(); ++image)
+      for (std::size_t source = 0; source < all.size(); ++source)
+      {
+        Neighbour link{static_cast<std::uint32_t>(source), {}, static_cast<std::uint8_t>(image)};
+        for (std::size_t c = 0; c < 3; ++c)
+        {
+          const auto axis = static_cast<int>(c);
+          const auto shift = static_cast<int>(std::lround(shifts[image][axis] / grid.edges[axis]));
+          link.offset[c] = static_cast<std::int16_t>(all[source].place[c] + shift - all[target].place[c]);
+        }
+        pair(target, link, neighbours);
+      }
+}
+
+double Octree::translation_cost(const std::array<std::int16_t, 3> &offset) const
+{
+  const int distance2 = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
+  return settings.translation_cost[std::min(static_cast<std::size_t>(distance2), settings.translation_cost.size() - 1)];
+}
+
+bool Octree::is_worth_dividing(const std::size_t box, const std::vector<Neighbour> &neighbours) const
+{
+  // Each pair of neighbours has direct work n_points n_lines in both directions. After the division of both, an eighth of
+  // it stays, and 56 of 64 pairs of children need translations, at least if all children exist.
+  const Box &a = all[box];
+  if (size(a) / 2 < settings.smallest_box || neighbours.empty())
+    return false;
+  double work = 0;
+  for (const Neighbour &n : neighbours)
+  {
+    const Box &b = all[n.box];
+    work += static_cast<double>(a.n_points() * b.n_lines() + a.n_lines() * b.n_points());
+  }
+  return work > 2 * 64 * settings.translation_cost[8] * static_cast<double>(neighbours.size());
+}
+
+void Octree::divide(const std::size_t index)
+{
+  Box box = all[index];
+  const Vec3 middle = centre(box);
+  const double longest = settings.longest_line * size(box) / 2;
+  // Key 0: lines too long for the children, held here.
+  const auto lines =
+      sort_by_key(line_at, box.lines_begin, box.lines_end, 9,
+                  [&](std::uint32_t i) { return line_length[i] > longest ? 0 : 1 + octant(line_middle[i], middle); });
+  const auto points = sort_by_key(point_at, box.points_begin, box.points_end, 8,
+                                  [&](std::uint32_t i) { return octant(point[i], middle); });
+  box.own_lines_end = lines[1];
+  box.first_child = static_cast<std::uint32_t>(all.size());
+  for (std::size_t k = 0; k < 8; ++k)
+  {
+    Box child;
+    child.parent = static_cast<std::uint32_t>(index);
+    child.level = static_cast<std::uint8_t>(box.level + 1);
+    child.place = {2 * box.place[0] + static_cast<int>(k & 1), 2 * box.place[1] + static_cast<int>(k >> 1 & 1),
+                   2 * box.place[2] + static_cast<int>(k >> 2)};
+    child.lines_begin = lines[k + 1];
+    child.lines_end = child.own_lines_end = lines[k + 2];
+    child.points_begin = points[k];
+    child.points_end = points[k + 1];
+    if (child.n_lines() + child.n_points() > 0)
+    {
+      all.push_back(child);
+      ++box.n_children;
+    }
+  }
+  all[index] = box;
+}
+
+void Octree::pair(const std::size_t target, const Neighbour &source, Neighbours &neighbours)
+{
+  const Box &a = all[target], &b = all[source.box];
+  const auto &d = source.offset;
+  if (std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}) <= 1)
+    neighbours[target - level_begin[level_begin.size() - 2]].push_back(source);
+  else if (a.n_points() == 0 || b.n_lines() == 0)
+    return;
+  else if (static_cast<double>(a.n_points() * b.n_lines()) < translation_cost(d))
+    near[target].push_back({source.box, source.image, false});
+  else
+    far[target].push_back({source.box, d});
+}
+
+void Octree::pair_children(const std::size_t box, const std::vector<Neighbour> &of_parent, Neighbours &neighbours)
+{
+  const Box &a = all[box];
+  for (const Neighbour &n : of_parent)
+  {
+    const Box &b = all[n.box];
+    const bool both = !a.is_leaf() && !b.is_leaf();
+    if (a.n_points() > 0 && (both ? b.own_lines_end : b.lines_end) > b.lines_begin)
+      near[box].push_back({n.box, n.image, both});
+    if (!both)
+      continue;
+    for (std::uint32_t i = 0; i < a.n_children; ++i)
+      for (std::uint32_t j = 0; j < b.n_children; ++j)
+      {
+        const std::uint32_t target = a.first_child + i;
+        Neighbour link{b.first_child + j, {}, n.image};
+        for (std::size_t c = 0; c < 3; ++c)
+          link.offset[c] =
+              static_cast<std::int16_t>(2 * n.offset[c] + (all[link.box].place[c] & 1) - (all[target].place[c] & 1));
+        pair(target, link, neighbours);
+      }
+  }
+}
+
+Vec3 Octree::edges(const Box &box) const
+{
+  return std::ldexp(1.0, -box.level) * grid.edges;
+}
+
+double Octree::size(const Box &box) const
+{
+  return edges(box).maxCoeff();
+}
+
+Vec3 Octree::centre(const Box &box) const
+{
+  const Vec3 corner(box.place[0] + 0.5, box.place[1] + 0.5, box.place[2] + 0.5);
+  return grid.origin + corner.cwiseProduct(edges(box));
+}
+} // namespace ddfem::fmm

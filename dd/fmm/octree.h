@@ -1,0 +1,154 @@
+// Adaptive octree of lines and points, with the pairs of boxes that interact directly and by expansions.
+#pragma once
+
+#include "dd/fmm/stress_expansion.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ddfem::fmm
+{
+/// The boxes of level 0: a grid of n[0] x n[1] x n[2] boxes with edge lengths `edges` (nm).
+struct RootGrid
+{
+  Vec3 origin = Vec3::Zero(); ///< lowest corner, nm
+  Vec3 edges = Vec3::Ones();
+  std::array<int, 3> n{1, 1, 1};
+  bool periodic = false; ///< with the 26 neighbouring images of the grid
+};
+
+/// Box of the tree. Its lines and points, those of its children included, are contiguous in the tree's order.
+struct Box
+{
+  std::uint32_t parent = 0, first_child = 0;
+  std::uint8_t n_children = 0, level = 0;
+  std::array<std::int32_t, 3> place{};          ///< integer coordinates in the grid of its level
+  std::uint32_t lines_begin = 0, lines_end = 0; ///< of the box and its children
+  std::uint32_t own_lines_end = 0;              ///< [lines_begin, own_lines_end) are held by this box itself
+  std::uint32_t points_begin = 0, points_end = 0;
+
+  std::size_t n_lines() const { return lines_end - lines_begin; }
+  std::size_t n_points() const { return points_end - points_begin; }
+  bool is_leaf() const { return n_children == 0; }
+};
+
+/// Lines of `box`, shifted by image number `image`, that act directly on the points of the box that has the link.
+struct NearLink
+{
+  std::uint32_t box;
+  std::uint8_t image;
+  bool own_only; ///< only the lines that `box` holds itself
+};
+
+/// Box whose multipole expansion acts on the box that has the link; offset of places, source - target.
+struct FarLink
+{
+  std::uint32_t box;
+  std::array<std::int16_t, 3> offset;
+};
+
+/// What decides how far boxes are divided and which pairs use expansions.
+struct TreeSettings
+{
+  /// Cost of a translation between boxes by their squared distance in boxes, in evaluations of a segment at a point; the last
+  /// entry holds for all larger distances.
+  std::vector<double> translation_cost;
+  double longest_line = 0.5; ///< of a box's lines, in box sizes; longer ones stay in a larger box
+  double smallest_box = 0.0; ///< nm
+};
+
+class Octree
+{
+public:
+  Octree(const RootGrid &grid, std::span<const LineSource> lines, std::span<const Vec3> points,
+         const TreeSettings &settings);
+
+  /// Level by level; children of a box are contiguous.
+  const std::vector<Box> &boxes() const { return all; }
+  /// First box of each level, and one past the last box.
+  const std::vector<std::uint32_t> &levels() const { return level_begin; }
+  const std::vector<NearLink> &near_links(std::size_t box) const { return near[box]; }
+  const std::vector<FarLink> &far_links(std::size_t box) const { return far[box]; }
+
+  /// Position in the tree's order -> index in what the constructor was given.
+  const std::vector<std::uint32_t> &line_order() const { return line_at; }
+  const std::vector<std::uint32_t> &point_order() const { return point_at; }
+
+  Vec3 centre(const Box &box) const; ///< nm
+  Vec3 edges(const Box &box) const;  ///< nm
+  double size(const Box &box) const; ///< longest edge, nm
+  /// Translations of the images, nm; the first is zero.
+  const std::vector<Vec3> &image_shifts() const { return shifts; }
+
+  /// Calls visit(position in the tree's order, image) for every line whose middle is nearer to @p x than @p radius plus half its
+  /// length, in a fixed order.
+  template <class Visit> void for_each_line_near(const Vec3 &x, double radius, Visit &&visit) const;
+
+private:
+  template <class Visit>
+  void visit_lines(const Box &box, const Vec3 &x, double radius, std::size_t image, Visit &visit) const;
+
+  struct Neighbour
+  {
+    std::uint32_t box;
+    std::array<std::int16_t, 3> offset;
+    std::uint8_t image;
+  };
+  using Neighbours = std::vector<std::vector<Neighbour>>;
+
+  void sort_into_roots(std::span<const LineSource> lines, std::span<const Vec3> points);
+  void pair_roots(Neighbours &neighbours);
+  bool is_worth_dividing(std::size_t box, const std::vector<Neighbour> &neighbours) const;
+  void divide(std::size_t box);
+  void pair_children(std::size_t box, const std::vector<Neighbour> &of_parent, Neighbours &neighbours);
+  void pair(std::size_t target, const Neighbour &source, Neighbours &neighbours);
+  double translation_cost(const std::array<std::int16_t, 3> &offset) const;
+
+  RootGrid grid;
+  TreeSettings settings;
+  std::vector<Box> all;
+  std::vector<std::uint32_t> level_begin;
+  std::vector<std::vector<NearLink>> near;
+  std::vector<std::vector<FarLink>> far;
+  std::vector<std::uint32_t> line_at, point_at;
+  std::vector<Vec3> line_middle, point; ///< as given
+  std::vector<double> line_length;      ///< as given
+  std::vector<Vec3> shifts;
+  /// Around each line, in the tree's order, nm.
+  struct LineSphere
+  {
+    double x, y, z, radius;
+  };
+  std::vector<LineSphere> spheres;
+  double longest_of_all = 0; ///< line, nm
+};
+template <class Visit> void Octree::for_each_line_near(const Vec3 &x, const double radius, Visit &&visit) const
+{
+  for (std::size_t image = 0; image < shifts.size(); ++image)
+    for (std::size_t root = 0; root < level_begin[1]; ++root)
+      visit_lines(all[root], x - shifts[image], radius, image, visit);
+}
+
+template <class Visit>
+void Octree::visit_lines(const Box &box, const Vec3 &x, const double radius, const std::size_t image,
+                         Visit &visit) const
+{
+  // Lines that leaves of level 0 hold may be of any length.
+  const double overhang = box.level == 0 ? longest_of_all : settings.longest_line * size(box);
+  const Vec3 outside = ((x - centre(box)).cwiseAbs() - 0.5 * edges(box)).cwiseMax(0.0);
+  const double reach = radius + 0.5 * overhang;
+  if (box.n_lines() == 0 || outside.squaredNorm() > reach * reach)
+    return;
+  for (std::uint32_t k = box.lines_begin; k < box.own_lines_end; ++k)
+  {
+    const LineSphere &s = spheres[k];
+    const double dx = x[0] - s.x, dy = x[1] - s.y, dz = x[2] - s.z, sum = radius + s.radius;
+    if (dx * dx + dy * dy + dz * dz < sum * sum)
+      visit(k, image);
+  }
+  for (std::uint32_t i = 0; i < box.n_children; ++i)
+    visit_lines(all[box.first_child + i], x, radius, image, visit);
+}
+} // namespace ddfem::fmm

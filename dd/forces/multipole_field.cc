@@ -1,0 +1,55 @@
+#include "dd/forces/multipole_field.h"
+
+#include "dd/fmm/grids_and_rays.h"
+
+#include <algorithm>
+
+namespace ddfem
+{
+namespace
+{
+using fmm::LineSource;
+using fmm::RaySource;
+
+/// Shortest piece into which rays are cut: about the size of the segments.
+double mean_length(const std::vector<StraightLine> &lines)
+{
+  double sum = 0;
+  for (const StraightLine &l : lines)
+    sum += (l.end - l.start).norm();
+  return lines.empty() ? 1.0 : std::max(sum / static_cast<double>(lines.size()), 1e-3);
+}
+} // namespace
+
+MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const Vec3> points_,
+                               const fmm::MultipoleSettings &settings)
+    : system(system_), points(points_.begin(), points_.end())
+{
+  std::vector<LineSource> lines;
+  for (const StraightLine &l : system.lines())
+    lines.push_back({l.start, l.end, l.burgers});
+  std::vector<RaySource> rays;
+  for (const VirtualRay &r : system.rays())
+    rays.push_back({r.origin, r.direction, r.burgers});
+  const PeriodicCell *const cell = system.cell();
+  if (cell)
+    for (Vec3 &x : points)
+      x += cell->shift_into_cell(x);
+  const fmm::RootGrid grid =
+      cell ? fmm::periodic_grid(cell->origin, cell->lengths) : fmm::enclosing_grid(lines, rays, points);
+  const auto distant = fmm::cut_rays(rays, grid, mean_length(system.lines()), lines);
+  expansions = std::make_unique<fmm::MultipoleStress>(system.medium(), settings, grid, lines, distant, points);
+}
+
+std::vector<SymTensor> MultipoleField::stress(MPI_Comm comm)
+{
+  std::vector<SymTensor> values = expansions->stress(comm);
+  if (system.far_images())
+  {
+#pragma omp parallel for schedule(static)
+    for (std::size_t i = 0; i < points.size(); ++i)
+      values[i] += system.far_images()->far_stress(points[i]);
+  }
+  return values;
+}
+} // namespace ddfem

@@ -1,0 +1,110 @@
+// The infinite field of a system of lines by the fast multipole method: at points, and as forces on the lines.
+#pragma once
+
+#include "dd/elasticity/segment_force.h"
+#include "dd/elasticity/vectorised/force_kernels.h"
+#include "dd/fmm/multipole_stress.h"
+#include "dd/forces/line_system.h"
+
+#include <mpi.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace ddfem
+{
+/// How the fields of many lines are summed.
+enum class SummationMethod : std::uint8_t
+{
+  direct,    ///< every pair in closed form
+  multipole, ///< distant boxes by expansions (dd/fmm)
+  automatic, ///< multipole from `multipole_from` lines
+};
+
+struct SummationSettings
+{
+  SummationMethod method = SummationMethod::automatic;
+  /// Error of the far stress relative to its rms, 1e-8 to 0.1 (of the total stress: about a fifth of it); the error of
+  /// quadrature along the lines is kept below it.
+  double tolerance = 1e-3;
+  /// Above the size at which both methods take the same time.
+  std::size_t multipole_from = 2000;
+
+  bool use_multipoles(std::size_t n_lines) const
+  {
+    return method == SummationMethod::multipole || (method == SummationMethod::automatic && n_lines >= multipole_from);
+  }
+};
+
+/// The sources of @p system and a tree that has them and @p points.
+class MultipoleField
+{
+public:
+  /// @throws std::invalid_argument for a tolerance outside its range.
+  MultipoleField(const LineSystem &system, std::span<const Vec3> points, const fmm::MultipoleSettings &settings);
+
+  /// As LineSystem::stress(): infinite-body stress at the points, MPa, periodic images included. Collective; all ranks get
+  /// all values, which do not depend on the number of ranks and threads.
+  std::vector<SymTensor> stress(MPI_Comm comm);
+
+  fmm::MultipoleStress &sum() { return *expansions; }
+  const fmm::MultipoleStress &sum() const { return *expansions; }
+
+private:
+  const LineSystem &system;
+  std::vector<Vec3> points; ///< wrapped into the periodic cell
+  std::unique_ptr<fmm::MultipoleStress> expansions;
+};
+
+/**
+ * Forces on the ends of the lines of a system from all other lines, rays and images. The stress is taken at Gauss points of
+ * panels (pieces of lines of similar length). Where a source is too near to a panel for the rule, its contribution
+ * to the rule is replaced by the force in closed form (segment_force.h): connected and close pairs are exact. A panel of half
+ * length h with n points integrates a source at distance d with a relative error of about rho^-2n, rho = d/h +
+ * sqrt(1 + (d/h)^2) (Trefethen, SIAM Rev. 50 (2008) 67, eq. 4.15): the switch.
+ */
+class MultipoleForces
+{
+public:
+  /// Computes the stress at all Gauss points. Collective. @p pair_tolerance: of the forces in closed form.
+  MultipoleForces(const LineSystem &system, const fmm::MultipoleSettings &settings, double pair_tolerance,
+                  MPI_Comm comm);
+
+  /// Forces on line number @p i of the system, without its own (self_force.h), MPa nm^2. Safe to call from any thread.
+  SegmentForces operator()(std::size_t i) const;
+
+  /// For measurements.
+  const MultipoleField &field() const { return *multipoles; }
+
+private:
+  /// Piece [begin, end] (fractions) of a line.
+  struct Panel
+  {
+    double begin, end;
+  };
+
+  /// Lines too near to a panel for its rule, among them the panel's own.
+  struct NearSources
+  {
+    LineTable table;
+    std::size_t itself = no_line;
+  };
+
+  std::vector<Panel> panels_of(std::size_t i) const;
+  SegmentForces panel_force(std::size_t i, const Panel &panel, std::size_t first_point) const;
+  void replace_near(std::size_t i, const Panel &panel, SegmentForces &force) const;
+  NearSources near_sources(std::size_t i, const Vec3 &start, const Vec3 &end) const;
+  template <class Stress>
+  SegmentForces quadrature(const StraightLine &line, const Panel &panel, Stress &&stress_at) const;
+
+  const LineSystem &system;
+  double pair_tolerance;
+  int n_gauss;              ///< points per panel
+  double near_distance;     ///< of sources that are replaced, in half lengths of the panel
+  double longest_panel = 0; ///< nm
+  std::vector<std::size_t> first_point;
+  std::unique_ptr<MultipoleField> multipoles;
+  std::vector<SymTensor> stress;
+};
+} // namespace ddfem
