@@ -1,12 +1,13 @@
 // Cost of the boundary-value problem in a step of a simulation, split into its parts, and the error that the tolerance of
 // the solve leaves in the stress at the segments.
 //
-//   mpirun -np RANKS ddfem_correction_benchmark DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE [SOLVER [DEPTH]]]]
+//   mpirun -np RANKS ddfem_correction_benchmark DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE [SOLVER [DEPTH [SUM]]]]]
 //
 // Cube of 1 micrometre with ELEMENTS per edge, clamped at z- and z+, filled with circular glide loops of 20 segments and
 // threading lines that end at the free faces, about SEGMENTS segments in all. Loops and lines move smoothly by about 0.5 nm
 // a step. TOLERANCE: of the solves of the steps, 1e-5 unless given. SOLVER: multigrid (unless
-// given) or direct. DEPTH: of the analytic images under the four free faces, in elements; 0 (unless given): no images. One line
+// given) or direct. DEPTH: of the analytic images under the four free faces, in elements; 0 (unless given): no images. SUM: automatic
+// (unless given: fast multipoles from 2000 lines or triangles) or direct. One line
 // of output per quantity; times are wall times in seconds, medians over the steps after the first six.
 #include "coupling/convert.h"
 #include "coupling/dislocation_tractions.h"
@@ -127,7 +128,7 @@ class Benchmark
 {
 public:
   Benchmark(const unsigned degree, const unsigned elements, const int segments, const int n_steps,
-            const double tolerance, const fem::Solver solver, const double image_depth)
+            const double tolerance, const fem::Solver solver, const double image_depth, const SummationMethod method)
       : steps(n_steps), pieces(random_pieces(segments)), shape(Vec3::Zero(), Vec3::Constant(edge))
   {
     fem::MeshParameters parameters;
@@ -143,6 +144,7 @@ public:
     problem = std::make_unique<fem::ElasticProblem>(*mesh, elasticity, fem::Moduli{medium.mu, medium.nu},
                                                     std::vector<fem::DisplacementCondition>{{4, all}, {5, all}});
     none.resize(problem->boundary_points().size());
+    summation.method = method;
     if (image_depth > 0)
       planes = coupling::image_planes(coupling::boundary_polygons(*mesh), {4, 5});
     image_settings.depth = image_depth * edge / elements;
@@ -186,7 +188,10 @@ private:
     fem::TractionSummary summary;
     fem::SolveInfo info;
     measure("tractions", count,
-            [&] { summary = problem->set_tractions(coupling::DislocationTractions(lines, &images)); });
+            [&] {
+              summary =
+                  problem->set_tractions(coupling::DislocationTractions(lines, &images, summation, MPI_COMM_WORLD));
+            });
     measure("warm solve", count, [&] { info = problem->solve(none); });
     measure("stress at segments, recovery included", count, [&] { problem->stress_at(points); });
     measure("stress at segments, again", count, [&] { problem->stress_at(points); });
@@ -215,8 +220,9 @@ private:
   void update_images(const LineSystem &lines)
   {
     images = SurfaceImages(lines, planes, image_settings);
-    images.displacement(boundary_points());
-    problem->project_on_conditions(coupling::ImageDisplacement(images, 2, resolution));
+    const coupling::ImageDisplacement field(images, 2, resolution, summation);
+    field.at(boundary_points());
+    problem->project_on_conditions(field);
   }
 
   /// At the points that FiniteGrain::correction_at_segments takes, divided among the ranks as there.
@@ -231,25 +237,29 @@ private:
     };
     const SegmentPoints dense(network, smooth_length);
     const IndexRange owned = owned_range(dense.positions().size(), MPI_COMM_WORLD);
-    images.stress(std::span(dense.positions()).subspan(owned.begin, owned.end - owned.begin));
+    coupling::ImageStress(images, medium.a)
+        .at(std::span(dense.positions()).subspan(owned.begin, owned.end - owned.begin), summation);
   }
 
   /// What FiniteGrain::add_swept does: two triangles per segment, of the motion in a step.
   void prescribed_displacement(const Network &before, const Network &after)
   {
-    std::vector<TriangularLoop> loops;
+    SweptArea area;
     for (const SegmentIndex s : before.segments())
     {
-      const LoopVertex p{before.position(before.start(s))}, q{before.position(before.end(s))};
-      const LoopVertex p_new{after.position(after.start(s))}, q_new{after.position(after.end(s))};
-      loops.emplace_back(p, p_new, q, before.burgers(s));
-      loops.emplace_back(q, p_new, q_new, before.burgers(s));
+      const Vec3 &p = before.position(before.start(s)), &q = before.position(before.end(s));
+      const Vec3 &p_new = after.position(after.start(s)), &q_new = after.position(after.end(s));
+      area.add_triangle(p, p_new, q, before.burgers(s), before.plane(s));
+      area.add_triangle(q, p_new, q_new, before.burgers(s), before.plane(s));
     }
+    const coupling::SweptLoops loops(area);
+    const coupling::SweptSummation how{summation, MPI_COMM_WORLD};
     measure("displacement by swept area on the boundary", true,
-            [&] { triangle_displacements(medium.nu, loops, boundary_points()); });
+            [&] { coupling::swept_displacement(medium.nu, loops, boundary_points(), how); });
     measure("its projection on the held faces", true,
             [&] {
-              problem->project_on_conditions(coupling::SweptDisplacement(loops, medium.nu, 2, 1e3 * edge, resolution));
+              problem->project_on_conditions(
+                  coupling::SweptDisplacement(loops, medium.nu, 2, 1e3 * edge, resolution, how));
             });
   }
 
@@ -258,6 +268,7 @@ private:
     ForceSettings settings;
     settings.medium = medium;
     settings.core_cutoff_radius = medium.a;
+    settings.summation = summation;
     ForceEnvironment environment;
     environment.shape = &shape;
     compute_nodal_forces(network, settings, environment, MPI_COMM_WORLD);
@@ -310,6 +321,7 @@ private:
   std::vector<dealii::Tensor<1, 3>> none;
   std::vector<ImagePlane> planes;
   ImageSettings image_settings;
+  SummationSettings summation;
   SurfaceImages images;
   double resolution; ///< of displacements on the held faces, nm
   std::vector<dealii::Point<3>> points;
@@ -321,7 +333,7 @@ int main(int argc, char **argv)
 {
   if (argc < 4)
   {
-    std::fprintf(stderr, "usage: %s DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE [SOLVER [DEPTH]]]]\n", argv[0]);
+    std::fprintf(stderr, "usage: %s DEGREE ELEMENTS SEGMENTS [STEPS [TOLERANCE [SOLVER [DEPTH [SUM]]]]]\n", argv[0]);
     return 2;
   }
   const int threads = omp_get_max_threads();
@@ -331,7 +343,8 @@ int main(int argc, char **argv)
   Benchmark(number(1), number(2), static_cast<int>(number(3)), argc > 4 ? static_cast<int>(number(4)) : 15,
             argc > 5 ? std::strtod(argv[5], nullptr) : 1e-5,
             argc > 6 && std::string(argv[6]) == "direct" ? fem::Solver::direct : fem::Solver::multigrid,
-            argc > 7 ? std::strtod(argv[7], nullptr) : 0.0)
+            argc > 7 ? std::strtod(argv[7], nullptr) : 0.0,
+            argc > 8 && std::string(argv[8]) == "direct" ? SummationMethod::direct : SummationMethod::automatic)
       .run();
   return 0;
 }

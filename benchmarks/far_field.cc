@@ -76,7 +76,7 @@ double far_force(const LineSystem &system, const double tolerance)
   for (const StraightLine &l : system.lines())
     middles.emplace_back(0.5 * (l.start + l.end));
   MultipoleField field(system, middles, {tolerance});
-  const auto far = field.sum().stress(MPI_COMM_SELF, fmm::MultipoleStress::Part::far);
+  const auto far = field.sum().stress(MPI_COMM_SELF, fmm::Part::far);
   double sum = 0;
   for (std::size_t i = 0; i < far.size(); ++i)
   {

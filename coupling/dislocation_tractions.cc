@@ -1,6 +1,7 @@
 #include "coupling/dislocation_tractions.h"
 
 #include "coupling/convert.h"
+#include "dd/common/parallel.h"
 #include "dd/elasticity/distance.h"
 
 #include <algorithm>
@@ -10,8 +11,10 @@
 
 namespace ddfem::coupling
 {
-DislocationTractions::DislocationTractions(const LineSystem &system, const SurfaceImages *surface_images)
-    : line_system(system), images(surface_images), ray_list(system.rays()), rays(system.ray_table())
+DislocationTractions::DislocationTractions(const LineSystem &system, const SurfaceImages *surface_images,
+                                           const SummationSettings &settings, MPI_Comm comm)
+    : line_system(system), images(surface_images), summation(settings), communicator(comm), ray_list(system.rays()),
+      rays(system.ray_table())
 {
   if (images)
     for (const auto &leg : images->remaining_legs())
@@ -19,6 +22,47 @@ DislocationTractions::DislocationTractions(const LineSystem &system, const Surfa
       ray_list.push_back(leg.ray);
       rays.add_ray(leg.ray.origin, leg.ray.direction, leg.ray.burgers);
     }
+  if (summation.method == SummationMethod::direct)
+    return;
+  std::vector<Ball> around;
+  for (const StraightLine &l : system.lines())
+    around.push_back({0.5 * (l.start + l.end), 0.5 * (l.end - l.start).norm()});
+  balls = BallBlocks(around);
+}
+
+std::optional<unsigned> DislocationTractions::n_summed(const std::size_t n_points) const
+{
+  if (!summation.use_multipoles(n_lines(), n_points))
+    return {};
+  return static_cast<unsigned>(n_lines() + line_system.rays().size());
+}
+
+std::vector<dealii::SymmetricTensor<2, 3>> DislocationTractions::sum(
+    const std::span<const dealii::Point<3>> points) const
+{
+  std::vector<Vec3> mine;
+  mine.reserve(points.size());
+  std::transform(points.begin(), points.end(), std::back_inserter(mine), to_vec3);
+  const GatheredPoints all = gather_points(mine, communicator);
+  MultipoleField field(line_system, all.points, {tolerance_of_tractions(summation)});
+  const std::vector<SymTensor> stress = field.stress(communicator);
+  std::vector<dealii::SymmetricTensor<2, 3>> result;
+  result.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    result.push_back(to_symmetric_tensor(stress[all.first + i]));
+  return result;
+}
+
+void DislocationTractions::append_near(const dealii::Point<3> &centre, const double radius, const double length,
+                                       std::vector<unsigned> &sources) const
+{
+  const Vec3 x = to_vec3(centre);
+  std::vector<unsigned> candidates;
+  balls.append_touching(x, radius + length, candidates);
+  for (auto ray = static_cast<unsigned>(n_lines()); ray < n_lines() + line_system.rays().size(); ++ray)
+    candidates.push_back(ray);
+  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(sources),
+               [&](const unsigned source) { return distance(source, x) < radius + length; });
 }
 
 unsigned DislocationTractions::n_sources() const

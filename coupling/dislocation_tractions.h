@@ -3,22 +3,36 @@
 
 #include "dd/elasticity/vectorised/stress_kernels.h"
 #include "dd/forces/line_system.h"
+#include "dd/forces/multipole_field.h"
 #include "dd/forces/surface_images.h"
+#include "dd/geometry/ball_blocks.h"
 #include "fem/traction_field.h"
+
+#include <mpi.h>
 
 #include <vector>
 
 namespace ddfem::coupling
 {
+/// Error of the sums for the boundary-value problem, relative to the rms of the far field: a tenth of that of the forces, since
+/// errors of the tractions do not balance.
+constexpr double tolerance_of_tractions(const SummationSettings &s)
+{
+  return 0.1 * s.tolerance;
+}
+
 /// Presents a LineSystem and the images of its lines to the FEM. Sources are the lines, the rays, the legs that the images leave
 /// on their faces, the images. On the face of an image the image and the lines and rays that it frees of tractions are left out:
 /// their sum is zero there. The stress of the non-singular theory is analytic up to the distance sqrt(d^2 + a^2) in the complex
-/// plane, d being the distance to the line (or mirror image): that is its smooth length.
+/// plane, d being the distance to the line (or mirror image): that is its smooth length. Many lines and their rays are summed by
+/// fast multipoles.
 class DislocationTractions final : public fem::TractionField
 {
 public:
   /// @p lines, without periodic images, and @p images (of the same lines; null: none) must outlive the object.
-  explicit DislocationTractions(const LineSystem &lines, const SurfaceImages *images = nullptr);
+  explicit DislocationTractions(const LineSystem &lines, const SurfaceImages *images = nullptr,
+                                const SummationSettings &summation = {SummationMethod::direct},
+                                MPI_Comm comm = MPI_COMM_SELF);
 
   unsigned n_sources() const override;
   void smooth_lengths(const dealii::Point<3> &centre, double radius, std::span<const unsigned> sources,
@@ -26,6 +40,11 @@ public:
   void add_stress(std::span<const unsigned> sources, std::span<const dealii::Point<3>> points,
                   std::span<dealii::SymmetricTensor<2, 3>> values) const override;
   bool vanishes_on(unsigned source, dealii::types::boundary_id boundary) const override;
+  std::optional<unsigned> n_summed(std::size_t n_points) const override;
+  double summation_error() const override { return tolerance_of_tractions(summation); }
+  std::vector<dealii::SymmetricTensor<2, 3>> sum(std::span<const dealii::Point<3>> points) const override;
+  void append_near(const dealii::Point<3> &centre, double radius, double length,
+                   std::vector<unsigned> &sources) const override;
 
 private:
   std::size_t n_lines() const { return line_system.lines().size(); }
@@ -36,6 +55,9 @@ private:
 
   const LineSystem &line_system;
   const SurfaceImages *images;
+  SummationSettings summation;
+  MPI_Comm communicator;
+  BallBlocks balls;                 ///< around the lines, if there are many
   std::vector<VirtualRay> ray_list; ///< rays of the lines, then legs
   LineTable rays;                   ///< the same
 };

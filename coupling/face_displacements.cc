@@ -1,12 +1,16 @@
 #include "coupling/face_displacements.h"
 
 #include "coupling/convert.h"
+#include "dd/common/parallel.h"
 #include "dd/elasticity/vectorised/displacement_kernels.h"
+#include "dd/fmm/multipole_displacement.h"
+#include "fem/interpolated_sum.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 namespace ddfem::coupling
 {
@@ -42,17 +46,102 @@ void FaceDisplacement::add_stress(const std::span<const unsigned> sources,
   std::transform(points.begin(), points.end(), std::back_inserter(positions), to_vec3);
   add_displacement(sources, positions, u);
   for (std::size_t i = 0; i < points.size(); ++i)
-    for (unsigned c = 0; c < 3; ++c)
-      values[i][axis][c] += u[i][c];
+    values[i] += as_stress(u[i]);
 }
 
-SweptDisplacement::SweptDisplacement(const std::vector<TriangularLoop> &triangles, const double poisson,
-                                     const int normal_axis, const double reach, const double smallest)
-    : FaceDisplacement(normal_axis), swept(triangles), nu(poisson), resolution(smallest)
+dealii::SymmetricTensor<2, 3> FaceDisplacement::as_stress(const Vec3 &u) const
 {
-  extents.reserve(swept.size());
-  for (const TriangularLoop &t : swept)
+  dealii::SymmetricTensor<2, 3> s;
+  for (unsigned c = 0; c < 3; ++c)
+    s[axis][c] = u[c];
+  return s;
+}
+
+SweptLoops::SweptLoops(const SweptArea &area)
+{
+  std::vector<TriangularLoop> open_ones;
+  for (const SweptTriangle &t : area.triangles())
+  {
+    const auto &v = t.vertices;
+    const bool is_open = v[0].at_infinity || v[1].at_infinity || v[2].at_infinity;
+    (is_open ? open_ones : loops).emplace_back(v[0], v[1], v[2], t.burgers);
+  }
+  n_finite = loops.size();
+  loops.insert(loops.end(), open_ones.begin(), open_ones.end());
+}
+
+namespace
+{
+/// Of the finite loops, at points of this rank.
+std::vector<Vec3> multipole_displacement(const double nu, const SweptLoops &swept, const GatheredPoints &all,
+                                         const std::size_t n_mine, const SweptSummation &summation)
+{
+  fmm::MultipoleDisplacement sum(nu, {tolerance_of_tractions(summation.settings)}, swept.finite(), all.points);
+  const std::vector<Vec3> u = sum.displacement(summation.communicator);
+  const auto first = u.begin() + static_cast<std::ptrdiff_t>(all.first);
+  return {first, first + static_cast<std::ptrdiff_t>(n_mine)};
+}
+
+Ball around(const TriangularLoop &t)
+{
+  const Vec3 centre = (t.vertices[0].value + t.vertices[1].value + t.vertices[2].value) / 3;
+  double radius = 0;
+  for (const LoopVertex &v : t.vertices)
+    radius = std::max(radius, (v.value - centre).norm());
+  return {centre, radius};
+}
+} // namespace
+
+std::vector<Vec3> swept_displacement(const double nu, const SweptLoops &swept, const std::span<const Vec3> points,
+                                     const SweptSummation &summation)
+{
+  const GatheredPoints all = gather_points(points, summation.communicator);
+  if (!summation.use_multipoles(swept, all.points.size()))
+    return triangle_displacements(nu, swept.loops, points);
+  std::vector<Vec3> u = multipole_displacement(nu, swept, all, points.size(), summation);
+  const std::vector<Vec3> of_open = triangle_displacements(nu, swept.open(), points);
+  for (std::size_t i = 0; i < u.size(); ++i)
+    u[i] += of_open[i];
+  return u;
+}
+
+SweptDisplacement::SweptDisplacement(const SweptLoops &triangles, const double poisson, const int normal_axis,
+                                     const double reach, const double smallest, const SweptSummation &how)
+    : FaceDisplacement(normal_axis), swept(triangles), nu(poisson), resolution(smallest), summation(how)
+{
+  extents.reserve(swept.loops.size());
+  for (const TriangularLoop &t : swept.loops)
     extents.push_back(extent_of(t, reach));
+  if (summation.settings.method == SummationMethod::direct)
+    return;
+  std::vector<Ball> all;
+  for (const TriangularLoop &t : swept.finite())
+    all.push_back(around(t));
+  balls = BallBlocks(all);
+}
+
+double SweptDisplacement::summation_error() const
+{
+  return tolerance_of_tractions(summation.settings);
+}
+
+std::vector<dealii::SymmetricTensor<2, 3>> SweptDisplacement::sum(const std::span<const dealii::Point<3>> points) const
+{
+  std::vector<Vec3> positions;
+  positions.reserve(points.size());
+  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_vec3);
+  std::vector<dealii::SymmetricTensor<2, 3>> result;
+  result.reserve(points.size());
+  const GatheredPoints all = gather_points(positions, summation.communicator);
+  for (const Vec3 &u : multipole_displacement(nu, swept, all, points.size(), summation))
+    result.push_back(as_stress(u));
+  return result;
+}
+
+void SweptDisplacement::append_near(const dealii::Point<3> &centre, const double radius, const double length,
+                                    std::vector<unsigned> &sources) const
+{
+  balls.append_touching(to_vec3(centre), radius + length, sources);
 }
 
 void SweptDisplacement::smooth_lengths(const dealii::Point<3> &centre, const double radius,
@@ -74,7 +163,7 @@ void SweptDisplacement::add_displacement(const std::span<const unsigned> sources
   std::vector<TriangularLoop> loops;
   loops.reserve(sources.size());
   for (const unsigned s : sources)
-    loops.push_back(swept[s]);
+    loops.push_back(swept.loops[s]);
   DisplacementBuffer buffer(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     buffer.set_point(i, points[i]);
@@ -89,5 +178,63 @@ void ImageDisplacement::smooth_lengths(const dealii::Point<3> &centre, const dou
   const Vec3 x = to_vec3(centre);
   for (std::size_t i = 0; i < sources.size(); ++i)
     lengths[i] = std::max(images.image_distance(sources[i], x) - radius, resolution);
+}
+
+namespace
+{
+std::vector<dealii::SymmetricTensor<2, 3>> interpolated(const fem::TractionField &field,
+                                                        const std::span<const Vec3> points,
+                                                        const SummationSettings &summation)
+{
+  std::vector<unsigned> sources(field.n_sources());
+  std::iota(sources.begin(), sources.end(), 0U);
+  std::vector<dealii::Point<3>> positions;
+  positions.reserve(points.size());
+  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_point);
+  return fem::interpolated_sum(field, sources, positions, tolerance_of_tractions(summation));
+}
+} // namespace
+
+std::vector<Vec3> ImageDisplacement::at(const std::vector<Vec3> &points) const
+{
+  if (!summation.use_multipoles(n_sources(), points.size()))
+    return images.displacement(points);
+  std::vector<Vec3> u;
+  u.reserve(points.size());
+  for (const auto &s : interpolated(*this, points, summation))
+    u.push_back(from_stress(s));
+  return u;
+}
+
+void ImageStress::smooth_lengths(const dealii::Point<3> &centre, const double radius,
+                                 const std::span<const unsigned> sources, const std::span<double> lengths) const
+{
+  const Vec3 x = to_vec3(centre);
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    lengths[i] = std::hypot(std::max(0.0, images.image_distance(sources[i], x) - radius), a);
+}
+
+void ImageStress::add_stress(const std::span<const unsigned> sources, const std::span<const dealii::Point<3>> points,
+                             const std::span<dealii::SymmetricTensor<2, 3>> values) const
+{
+  const std::vector<std::size_t> numbers(sources.begin(), sources.end());
+  std::vector<Vec3> positions;
+  positions.reserve(points.size());
+  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_vec3);
+  std::vector<SymTensor> stress(points.size(), SymTensor::Zero());
+  images.add_stress(numbers, positions, stress);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    values[i] += to_symmetric_tensor(stress[i]);
+}
+
+std::vector<SymTensor> ImageStress::at(const std::span<const Vec3> points, const SummationSettings &summation) const
+{
+  if (!summation.use_multipoles(n_sources(), points.size()))
+    return images.stress(points);
+  std::vector<SymTensor> stress;
+  stress.reserve(points.size());
+  for (const auto &s : interpolated(*this, points, summation))
+    stress.push_back(to_sym_tensor(s));
+  return stress;
 }
 } // namespace ddfem::coupling

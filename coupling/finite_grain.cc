@@ -7,7 +7,6 @@
 #include "coupling/image_planes.h"
 #include "coupling/input_error.h"
 #include "dd/common/parallel.h"
-#include "dd/elasticity/vectorised/displacement_kernels.h"
 #include "dd/topology/growth.h"
 #include "fem/face_section.h"
 
@@ -189,9 +188,10 @@ void FiniteGrain::find_image_planes(const std::vector<PolyhedronShape::Facet> &f
 void FiniteGrain::update_images(const LineSystem &lines)
 {
   images = SurfaceImages(lines, planes_of_images, image_settings);
-  const std::vector<Vec3> u = images.displacement(boundary_nodes());
+  const ImageDisplacement field(images, axis, face_resolution, parameters.summation);
+  const std::vector<Vec3> u = field.at(boundary_nodes());
   std::transform(u.begin(), u.end(), image_displacement.begin(), to_tensor);
-  project_where_held(ImageDisplacement(images, axis, face_resolution), image_displacement);
+  project_where_held(field, image_displacement);
 }
 
 void FiniteGrain::describe_platen(const std::vector<PolyhedronShape::Facet> &facets)
@@ -248,7 +248,7 @@ void FiniteGrain::relax(const LineSystem &lines)
 {
   fem::ElasticProblem free_grain(*mesh, parameters.elasticity, fem::Moduli{medium.mu, medium.nu}, {});
   update_images(lines);
-  free_grain.set_tractions(DislocationTractions(lines, &images));
+  free_grain.set_tractions(DislocationTractions(lines, &images, parameters.summation, communicator));
   free_grain.solve(std::vector<dealii::Tensor<1, 3>>(free_grain.boundary_points().size()));
   reference_correction = free_grain.boundary_displacements();
   for (std::size_t i = 0; i < reference_correction.size(); ++i)
@@ -257,15 +257,13 @@ void FiniteGrain::relax(const LineSystem &lines)
 
 void FiniteGrain::add_swept(const SweptArea &area)
 {
-  std::vector<TriangularLoop> loops;
-  loops.reserve(area.triangles().size());
-  for (const SweptTriangle &t : area.triangles())
-    loops.emplace_back(t.vertices[0], t.vertices[1], t.vertices[2], t.burgers);
+  const SweptLoops loops(area);
+  const SweptSummation summation{parameters.summation, communicator};
   std::vector<dealii::Tensor<1, 3>> u;
-  for (const Vec3 &value : triangle_displacements(medium.nu, loops, boundary_nodes()))
+  for (const Vec3 &value : swept_displacement(medium.nu, loops, boundary_nodes(), summation))
     u.push_back(to_tensor(value));
   const double reach = 1e3 * grain_shape->diameter();
-  project_where_held(SweptDisplacement(loops, medium.nu, axis, reach, face_resolution), u);
+  project_where_held(SweptDisplacement(loops, medium.nu, axis, reach, face_resolution, summation), u);
   for (std::size_t i = 0; i < u.size(); ++i)
     infinite_displacement[i] += u[i];
 }
@@ -289,7 +287,7 @@ GrainSolution FiniteGrain::solve_at_rest(const LineSystem &lines)
 {
   GrainSolution solution;
   update_images(lines);
-  solution.tractions = problem->set_tractions(DislocationTractions(lines, &images));
+  solution.tractions = problem->set_tractions(DislocationTractions(lines, &images, parameters.summation, communicator));
   const double diameter = grain_shape->diameter();
   std::tie(solution.force_imbalance, solution.moment_imbalance) =
       imbalance(solution.tractions, medium.mu * medium.a * diameter, diameter);
@@ -348,7 +346,8 @@ void FiniteGrain::add_images(const std::vector<Vec3> &points, std::vector<SymTen
     return;
   std::vector<SymTensor> of_images(points.size());
   const IndexRange owned = owned_range(points.size(), communicator);
-  const auto mine = images.stress(std::span(points).subspan(owned.begin, owned.end - owned.begin));
+  const auto mine = ImageStress(images, medium.a)
+                        .at(std::span(points).subspan(owned.begin, owned.end - owned.begin), parameters.summation);
   std::copy(mine.begin(), mine.end(), of_images.begin() + static_cast<std::ptrdiff_t>(owned.begin));
   gather_owned(of_images, communicator);
   for (std::size_t k = 0; k < points.size(); ++k)

@@ -46,10 +46,10 @@ void read_material(const InputDeck &deck, Parameters &p)
   p.mobility.drag_screw = number_or(deck, "Mobility/Screw drag", units::pascal_second, material->drag);
   p.pair_tolerance = deck.number("Forces/Pair tolerance");
   const std::string summation = deck.text("Forces/Summation");
-  p.summation.method = summation == "direct"      ? SummationMethod::direct
-                       : summation == "multipole" ? SummationMethod::multipole
-                                                  : SummationMethod::automatic;
-  p.summation.tolerance = deck.number("Forces/Far-field tolerance");
+  p.grain.summation.method = summation == "direct"      ? SummationMethod::direct
+                             : summation == "multipole" ? SummationMethod::multipole
+                                                        : SummationMethod::automatic;
+  p.grain.summation.tolerance = deck.number("Forces/Far-field tolerance");
 }
 
 /// The cell of the named material, with c/a of the input if given.

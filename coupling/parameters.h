@@ -47,6 +47,7 @@ struct GrainParameters
   ReferenceState reference = ReferenceState::relaxed;
   RayDirection ray_direction = RayDirection::normal;
   double correction_tolerance = 0; ///< see CorrectionUpdate
+  SummationSettings summation;     ///< of fields and forces
   double image_depth = 4;          ///< lines nearer than this many elements to a flat free face get analytic images
 };
 
@@ -103,14 +104,13 @@ struct Parameters
   TopologySettings topology;
   double core_cutoff_radius = 0; ///< nm
   double pair_tolerance = 0;
-  SummationSettings summation;
   IntegratorSettings integrator;
   StopCriteria stop;
   OutputParameters output;
 
   ForceSettings force_settings() const
   {
-    return {medium, core_cutoff_radius, pair_tolerance, grain.ray_direction, summation};
+    return {medium, core_cutoff_radius, pair_tolerance, grain.ray_direction, grain.summation};
   }
   SlipSystems slip_systems() const { return {lattice, lattice_parameter, orientation, slip}; }
 };

@@ -48,7 +48,8 @@ void write_network_vtu(const std::string &path, const Network &network);
 class RunOutput
 {
 public:
-  /// Creates the directory. @p write: false on the other ranks, which then write nothing.
+  /// Creates the directory, unless its name is empty: then nothing is written at all, which is for tests and measurements.
+  /// @p write: false on the other ranks, which then write their part of the surface only.
   RunOutput(std::string directory, bool write);
 
   void add_history(const HistoryRow &row);

@@ -283,7 +283,7 @@ NodalForces Simulation::forces()
 std::vector<SymTensor> Simulation::infinite_stress(const std::vector<Vec3> &points)
 {
   const LineSystem lines = line_system();
-  const SummationSettings &summation = parameters.summation;
+  const SummationSettings &summation = parameters.grain.summation;
   return summation.use_multipoles(lines.lines().size())
              ? MultipoleField(lines, points, {summation.tolerance}).stress(communicator)
              : lines.stress(points);

@@ -99,7 +99,7 @@ void Simulation::report(RunOutput &output, const IntegratorStep &step, const boo
   if (frame)
   {
     output.add_network_frame(step_number, time, dislocations);
-    if (finite_grain)
+    if (finite_grain && !output.directory().empty())
     {
       std::ostringstream name;
       name << "grain_" << std::setfill('0') << std::setw(7) << step_number;

@@ -29,25 +29,19 @@ const std::vector<dealii::QGauss<1>> &gauss_rules(unsigned n_rules)
 }
 } // namespace
 
-/// Buffers of a thread.
-struct BoundaryLoad::Workspace
+double BoundaryLoad::ratio_for(double error, unsigned n)
 {
-  std::array<std::vector<unsigned>, (most_points + 1) * (most_points + 1)> groups; // sources by the orders they need
-  std::vector<double> lengths;
-  std::vector<Sample> samples;
-  std::vector<dealii::Point<3>> points;
-  std::vector<dealii::SymmetricTensor<2, 3>> stresses;
-};
+  return std::sinh(-std::log(error) / (2. * (n - 1.)));
+}
 
 BoundaryLoad::BoundaryLoad(const NodalGrid &nodal_grid, const dealii::Point<3> &moment_centre,
                            double relative_tolerance)
-    : grid(nodal_grid), centre(moment_centre)
+    : grid(nodal_grid), centre(moment_centre), tolerance(relative_tolerance)
 {
   for (unsigned n = 0; n <= most_points; ++n)
   {
     // Shape functions and area element of the whole face are integrated whatever the field.
-    least_ratio[n] = n <= grid.degree ? std::numeric_limits<double>::infinity()
-                                      : std::sinh(-std::log(relative_tolerance) / (2. * (n - 1.)));
+    least_ratio[n] = n <= grid.degree ? std::numeric_limits<double>::infinity() : ratio_for(tolerance, n);
   }
   for (const auto &face : grid.faces)
   {
@@ -213,7 +207,15 @@ void BoundaryLoad::integrate(const TractionField &field, const Piece &piece, con
   }
   work.stresses.assign(work.points.size(), {});
   field.add_stress(sources, work.points, work.stresses);
-  const std::size_t n_nodes = nodes_of_face[piece.face].size();
+  add_samples(piece.face, result, work);
+  result.n_points += work.samples.size();
+  result.n_evaluations += work.samples.size() * sources.size();
+}
+
+/// Adds the tractions of the stresses at the samples.
+void BoundaryLoad::add_samples(unsigned face, FaceIntegral &result, const Workspace &work) const
+{
+  const std::size_t n_nodes = nodes_of_face[face].size();
   for (std::size_t i = 0; i < work.samples.size(); ++i)
   {
     const Sample &s = work.samples[i];
@@ -225,32 +227,37 @@ void BoundaryLoad::integrate(const TractionField &field, const Piece &piece, con
       result.nodal[a] += s.values[a] * force;
     }
   }
-  result.n_points += work.samples.size();
-  result.n_evaluations += work.samples.size() * sources.size();
 }
 
-BoundaryLoad::FaceIntegral BoundaryLoad::integrate_face(const TractionField &field, unsigned face,
+BoundaryLoad::FaceIntegral BoundaryLoad::integrate_face(const TractionField &field, unsigned face, const Sum &sum,
                                                         Workspace &work) const
 {
+  FaceIntegral result;
   std::vector<unsigned> sources;
-  for (unsigned source = 0; source < field.n_sources(); ++source)
+  if (sum.order > 0)
   {
-    if (!field.vanishes_on(source, grid.faces[face].boundary))
+    integrate_sum(field, face, sum, sources, result, work);
+  }
+  else
+  {
+    for (unsigned source = 0; source < field.n_sources(); ++source)
     {
-      sources.push_back(source);
+      if (!field.vanishes_on(source, grid.faces[face].boundary))
+      {
+        sources.push_back(source);
+      }
     }
   }
-  FaceIntegral result;
-  if (sources.empty())
+  if (!sources.empty())
   {
-    return result;
+    descend(field, whole(face), sources, result, work);
   }
-  descend(field, {face, {0., 0.}, {1., 1.}, {0, 0}, {}, 0., {}}, sources, result, work);
   return result;
 }
 
 TractionSummary BoundaryLoad::add_field(const TractionField &field, NodalVector &load) const
 {
+  const Sum summed = sum(field);
   std::vector<FaceIntegral> integrals(grid.faces.size());
 #pragma omp parallel
   {
@@ -258,7 +265,7 @@ TractionSummary BoundaryLoad::add_field(const TractionField &field, NodalVector 
 #pragma omp for schedule(dynamic)
     for (unsigned face = 0; face < integrals.size(); ++face)
     {
-      integrals[face] = integrate_face(field, face, work);
+      integrals[face] = integrate_face(field, face, summed, work);
     }
   }
   TractionSummary summary;
@@ -325,7 +332,7 @@ std::vector<double> BoundaryLoad::mass(unsigned face) const
   std::vector<double> matrix(n * n, 0.);
   std::vector<Sample> samples;
   const unsigned n_points = 2 * grid.degree + 1; // exact on flat faces
-  append_points({face, {0., 0.}, {1., 1.}, {0, 0}, {}, 0., {}}, {n_points, n_points}, samples);
+  append_points(whole(face), {n_points, n_points}, samples);
   for (const Sample &s : samples)
   {
     const double area = s.area.norm();
@@ -349,7 +356,7 @@ void BoundaryLoad::add_uniform(dealii::types::boundary_id boundary, const dealii
       continue;
     }
     samples.clear();
-    append_points({face, {0., 0.}, {1., 1.}, {0, 0}, {}, 0., {}}, {most_points, most_points}, samples);
+    append_points(whole(face), {most_points, most_points}, samples);
     for (const Sample &s : samples)
     {
       for (unsigned k = 0; k < 3 * nodes_of_face[face].size(); ++k)

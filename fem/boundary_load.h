@@ -6,6 +6,7 @@
 #include "fem/traction_field.h"
 
 #include <array>
+#include <map>
 #include <vector>
 
 namespace ddfem::fem
@@ -21,6 +22,9 @@ namespace ddfem::fem
 /// rho^(-2n), rho = 2s/h + sqrt((2s/h)^2 + 1) (Bernstein ellipse; Trefethen, SIAM Review 50 (2008) 67, theorem 4.5). One
 /// point more covers the growth of the shape functions on the ellipse. The error of a source on a piece of face is then
 /// at most about `tolerance` times its largest traction there times the area.
+///
+/// A field of many sources is summed at the points of one rule for all faces (TractionField::n_summed); the sources for which that rule
+/// is not enough are taken out of the sum and integrated as above.
 class BoundaryLoad
 {
 public:
@@ -69,12 +73,44 @@ private:
     dealii::Tensor<1, 3> force, moment;
     std::uint64_t n_points = 0, n_evaluations = 0, n_unresolved = 0;
   };
-  struct Workspace;
+  /// Buffers of a thread.
+  struct Workspace
+  {
+    std::array<std::vector<unsigned>, (most_points + 1) * (most_points + 1)> groups; // sources by the orders they need
+    std::vector<double> lengths;
+    std::vector<Sample> samples;
+    std::vector<dealii::Point<3>> points;
+    std::vector<dealii::SymmetricTensor<2, 3>> stresses;
+  };
+  static constexpr std::size_t no_points = static_cast<std::size_t>(-1);
+  /// Stresses of all sources at the points of the common rule, and who belongs to them, by boundary.
+  struct Sum
+  {
+    unsigned order = 0;                   // Gauss points in each direction; 0: there is none
+    double near_ratio = 0.;               // 2s/h below which a source needs another rule
+    std::vector<std::size_t> first_point; // of each face; no_points: zero there
+    std::vector<dealii::SymmetricTensor<2, 3>> stress;
+    std::map<dealii::types::boundary_id, std::vector<unsigned>> vanishing; // among the sources that the field sums
+    std::map<dealii::types::boundary_id, std::vector<unsigned>> others;    // not summed by the field, and not vanishing
+  };
+
+  Sum sum(const TractionField &field) const;
+  /// Points of the common rule.
+  std::vector<dealii::Point<3>> common_points(const Sum &sum) const;
+  void add_others(const TractionField &field, double error, const std::vector<dealii::Point<3>> &points,
+                  Sum &sum) const;
+  /// Adds a face's part of the sum without the sources that need another rule, which are appended to `rest`.
+  void integrate_sum(const TractionField &field, unsigned face, const Sum &sum, std::vector<unsigned> &rest,
+                     FaceIntegral &result, Workspace &work) const;
+  void add_samples(unsigned face, FaceIntegral &result, const Workspace &work) const;
+  /// Smallest 2s/h for which `n` points are enough for a relative error.
+  static double ratio_for(double error, unsigned n);
+  static Piece whole(unsigned face) { return {face, {0., 0.}, {1., 1.}, {0, 0}, {}, 0., {}}; }
 
   void measure(Piece &piece) const;
   Sample sample(unsigned face, double s, double t) const;
   unsigned required_order(double length, double distance) const;
-  FaceIntegral integrate_face(const TractionField &field, unsigned face, Workspace &work) const;
+  FaceIntegral integrate_face(const TractionField &field, unsigned face, const Sum &sum, Workspace &work) const;
   /// Integrates the sources over a piece, or over its parts.
   void descend(const TractionField &field, Piece piece, const std::vector<unsigned> &sources, FaceIntegral &result,
                Workspace &work) const;
@@ -88,6 +124,7 @@ private:
 
   const NodalGrid &grid;
   dealii::Point<3> centre;
+  double tolerance;
   std::array<double, most_points + 1> least_ratio;  // smallest 2s/h for which a number of points is enough
   std::vector<std::vector<unsigned>> nodes_of_face; // local nodes of each boundary face
 };

@@ -32,6 +32,17 @@ public:
   {
     return boundaries.count(boundary) == 0 || field.vanishes_on(source, boundary);
   }
+  std::optional<unsigned> n_summed(std::size_t n_points) const override { return field.n_summed(n_points); }
+  double summation_error() const override { return field.summation_error(); }
+  std::vector<dealii::SymmetricTensor<2, 3>> sum(std::span<const dealii::Point<3>> points) const override
+  {
+    return field.sum(points);
+  }
+  void append_near(const dealii::Point<3> &centre, double radius, double length,
+                   std::vector<unsigned> &sources) const override
+  {
+    field.append_near(centre, radius, length, sources);
+  }
 
 private:
   const TractionField &field;

@@ -5,8 +5,11 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace ddfem::fem
 {
@@ -32,6 +35,22 @@ public:
 
   /// Whether the traction of a source is known to be zero on the whole boundary with an id; it is not integrated there.
   virtual bool vanishes_on(unsigned /*source*/, dealii::types::boundary_id /*boundary*/) const { return false; }
+
+  /// If the field is to be summed at so many points in all: whether to sum all sources at the same points, corrected for those that are
+  /// too near for these, with a relative error of summation_error(). Then the first so many sources (perhaps none) are summed by sum(),
+  /// faster than one by one, and the others are interpolated. Without a value every source is integrated by itself.
+  virtual std::optional<unsigned> n_summed(std::size_t /*n_points*/) const { return {}; }
+  virtual double summation_error() const { return 0.; }
+  /// Stress (MPa) of these sources at points of this rank (nm). Collective over the ranks of the mesh.
+  virtual std::vector<dealii::SymmetricTensor<2, 3>> sum(std::span<const dealii::Point<3>> /*points*/) const
+  {
+    return {};
+  }
+  /// Appends, in ascending order, those of them that may have smooth lengths below `length` in a ball (nm), and perhaps others.
+  virtual void append_near(const dealii::Point<3> & /*centre*/, double /*radius*/, double /*length*/,
+                           std::vector<unsigned> & /*sources*/) const
+  {
+  }
 };
 
 /// Integrals of t = sigma~ n over the whole closed boundary, n outward, summed over the ranks.

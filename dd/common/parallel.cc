@@ -46,4 +46,21 @@ void gather_owned_bytes(void *values, const std::size_t n, const std::size_t ite
   }
   MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values, counts.data(), offsets.data(), MPI_BYTE, comm);
 }
+
+GatheredPoints gather_points(const std::span<const Vec3> mine, MPI_Comm comm)
+{
+  const auto [rank, size] = rank_and_size(comm);
+  if (size == 1)
+    return {{mine.begin(), mine.end()}, 0};
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  std::vector<int> counts(static_cast<std::size_t>(size)), offsets{0};
+  const auto n = static_cast<int>(3 * mine.size());
+  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
+  for (const int count : counts)
+    offsets.push_back(offsets.back() + count);
+  GatheredPoints all{std::vector<Vec3>(static_cast<std::size_t>(offsets.back() / 3)),
+                     static_cast<std::size_t>(offsets[static_cast<std::size_t>(rank)] / 3)};
+  MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.points.data(), counts.data(), offsets.data(), MPI_DOUBLE, comm);
+  return all;
+}
 } // namespace ddfem

@@ -1,9 +1,12 @@
 // Division of replicated work among MPI ranks.
 #pragma once
 
+#include "dd/common/types.h"
+
 #include <mpi.h>
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace ddfem
@@ -24,4 +27,11 @@ template <class T> void gather_owned(std::vector<T> &values, MPI_Comm comm)
 {
   gather_owned_bytes(values.data(), values.size(), sizeof(T), comm);
 }
+
+struct GatheredPoints
+{
+  std::vector<Vec3> points; ///< of all ranks, one rank after the other
+  std::size_t first;        ///< where those of this rank begin
+};
+GatheredPoints gather_points(std::span<const Vec3> mine, MPI_Comm comm);
 } // namespace ddfem

@@ -6,12 +6,12 @@
 
 namespace ddfem::fmm
 {
-RootGrid enclosing_grid(const std::span<const LineSource> lines, const std::span<const RaySource> rays,
+RootGrid enclosing_grid(const std::span<const SourceExtent> sources, const std::span<const RaySource> rays,
                         const std::span<const Vec3> points)
 {
   Eigen::AlignedBox3d box;
-  for (const LineSource &l : lines)
-    box.extend(0.5 * (l.start + l.end));
+  for (const SourceExtent &s : sources)
+    box.extend(s.middle);
   for (const RaySource &r : rays)
     box.extend(r.origin);
   for (const Vec3 &p : points)

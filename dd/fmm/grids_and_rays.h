@@ -20,7 +20,7 @@ std::vector<RaySource> cut_rays(std::span<const RaySource> rays, const RootGrid 
 /// Root grid of a periodic cell from @p origin with edges @p lengths (nm): boxes that are nearly cubes.
 RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths);
 
-/// Root cube around lines, rays' origins and points; four times as wide if there are rays.
-RootGrid enclosing_grid(std::span<const LineSource> lines, std::span<const RaySource> rays,
+/// Root cube around the middles of sources, rays' origins and points; four times as wide if there are rays.
+RootGrid enclosing_grid(std::span<const SourceExtent> sources, std::span<const RaySource> rays,
                         std::span<const Vec3> points);
 } // namespace ddfem::fmm

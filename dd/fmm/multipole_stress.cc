@@ -1,62 +1,14 @@
 #include "dd/fmm/multipole_stress.h"
 
 #include "dd/elasticity/vectorised/stress_kernels.h"
-#include "dd/fmm/accuracy.h"
 #include "dd/fmm/grids_and_rays.h"
 
-#include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <limits>
 
 namespace ddfem::fmm
 {
 namespace
 {
-/// Boxes whose translations are sorted by direction together; the unit of work of a thread.
-constexpr std::uint32_t boxes_per_chunk = 64;
-
-/// Adds the processor time of a scope to a phase.
-class Stopwatch
-{
-public:
-  explicit Stopwatch(double &phase_) : phase(phase_) {}
-  Stopwatch(const Stopwatch &) = delete;
-  Stopwatch &operator=(const Stopwatch &) = delete;
-  ~Stopwatch() { phase += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC; }
-
-private:
-  double &phase;
-  std::clock_t start = std::clock();
-};
-
-TreeSettings tree_settings(const IsotropicMedium &medium, const MultipoleSettings &settings, const int order)
-{
-  TreeSettings s;
-  for (int distance2 = 0; distance2 <= 27; ++distance2)
-    s.translation_cost.push_back(settings.translation_cost_factor *
-                                 translation_cost(order_at_distance(order, std::sqrt(distance2))));
-  // The first term of the core that is left out is of relative order (a/d)^4, at distances d of 2 boxes and more.
-  s.smallest_box = medium.a / 2 / std::pow(settings.tolerance, 0.25);
-  return s;
-}
-
-/// Translates one box: fields, and Q with its new reference point; @p shift (nm) from the old one.
-void translate_box(const Translation &t, const Vec3 &shift, const Row *fields, const double *q,
-                   const ExpansionView &target)
-{
-  const std::size_t n = n_harmonics(t.order());
-  t.add(fields, target.fields);
-  RowBuffer in(n), out(n);
-  std::vector<double> moved(n);
-  move_reference_point(n, shift, fields, q, moved.data());
-  for (std::size_t k = 0; k < n; ++k)
-    in(k, 0) = moved[k];
-  t.add(in.rows(), out.rows());
-  for (std::size_t k = 0; k < n; ++k)
-    target.q[k] += out(k, 0);
-}
-
 /// A batch at points moved by @p shift (nm).
 struct ShiftedBatch
 {
@@ -74,310 +26,73 @@ struct ShiftedBatch
   }
 };
 
-std::size_t octant_of(const Box &box)
+/// The first term of the core that is left out is of relative order (a/d)^4, at distances d of 2 boxes and more.
+double smallest_box(const IsotropicMedium &medium, const double tolerance)
 {
-  const int octant = (box.place[0] & 1) + 2 * (box.place[1] & 1) + 4 * (box.place[2] & 1);
-  return static_cast<std::size_t>(octant);
+  return medium.a / 2 / std::pow(tolerance, 0.25);
 }
 } // namespace
 
-MultipoleStress::MultipoleStress(const IsotropicMedium &medium_, const MultipoleSettings &settings_,
-                                 const RootGrid &grid, const std::span<const LineSource> lines,
-                                 const std::span<const RaySource> distant_rays, const std::span<const Vec3> points)
-    : medium(medium_), settings(settings_),
-      expansion_order_(settings.order > 0 ? settings.order : expansion_order(settings.tolerance)),
-      tree(grid, lines, points, tree_settings(medium, settings, expansion_order_)),
-      rays(distant_rays.begin(), distant_rays.end()), multipole(0, 0), local(0, 0)
+MultipoleStress::MultipoleStress(const IsotropicMedium &medium_, const MultipoleSettings &given, const RootGrid &grid,
+                                 const std::span<const LineSource> lines, const std::span<const RaySource> distant_rays,
+                                 const std::span<const Vec3> points)
+    : MultipoleSum(given, grid, extents_of(lines), points, smallest_box(medium_, given.tolerance), 6), medium(medium_),
+      rays(distant_rays.begin(), distant_rays.end())
 {
   sources.reserve(lines.size());
-  for (const std::uint32_t i : tree.line_order())
+  for (const std::uint32_t i : octree().line_order())
   {
     sources.push_back(lines[i]);
     line_table.add_segment(lines[i].start, lines[i].end, lines[i].burgers);
   }
   for (const RaySource &r : rays)
     ray_table.add_ray(r.origin, r.direction, r.burgers);
-  for (std::size_t c = 0; c < 3; ++c)
-    for (const std::uint32_t i : tree.point_order())
-      x[c].push_back(points[i][static_cast<int>(c)]);
-  for (std::uint32_t i = 0; i < tree.boxes().size(); ++i)
-    if (tree.boxes()[i].is_leaf() && tree.boxes()[i].n_points() > 0)
-      leaves.push_back(i);
-  std::sort(leaves.begin(), leaves.end(),
-            [&](std::uint32_t a, std::uint32_t b)
-            { return tree.boxes()[a].points_begin < tree.boxes()[b].points_begin; });
-  make_translations(grid);
 }
 
-void MultipoleStress::make_translations(const RootGrid &grid)
+void MultipoleStress::add_own_moments(const Box &box, const ExpansionView &moments) const
 {
-  const Vec3 edges = grid.edges / grid.edges.maxCoeff();
-  for (int k = 0; k < 8; ++k)
-  {
-    const auto side = [k](int axis) { return (k >> axis & 1) != 0 ? 0.25 : -0.25; };
-    const Vec3 to_child_centre = edges.cwiseProduct(Vec3(side(0), side(1), side(2)));
-    to_parent.emplace_back(Shift::child_to_parent, expansion_order_, to_child_centre);
-    to_child.emplace_back(Shift::parent_to_child, expansion_order_, to_child_centre);
-  }
-  for (std::size_t root = 0; root < tree.levels()[1]; ++root)
-    for (const FarLink &l : tree.far_links(root))
-      for (const std::int16_t o : l.offset)
-        largest_offset = std::max(largest_offset, std::abs(o));
-  const int n = 2 * largest_offset + 1, volume = n * n * n;
-  far_number.assign(static_cast<std::size_t>(volume), std::numeric_limits<std::uint32_t>::max());
-  for (std::size_t box = 0; box < tree.boxes().size(); ++box)
-    for (const FarLink &l : tree.far_links(box))
-    {
-      const int k =
-          ((l.offset[0] + largest_offset) * n + l.offset[1] + largest_offset) * n + l.offset[2] + largest_offset;
-      std::uint32_t &number = far_number[static_cast<std::size_t>(k)];
-      if (number != std::numeric_limits<std::uint32_t>::max())
-        continue;
-      number = static_cast<std::uint32_t>(far.size());
-      const Vec3 d = -edges.cwiseProduct(Vec3(l.offset[0], l.offset[1], l.offset[2]));
-      far.emplace_back(Shift::far, order_at_distance(expansion_order_, d.norm()), d);
-    }
-}
-
-std::uint32_t MultipoleStress::far_translation(const std::array<std::int16_t, 3> &offset) const
-{
-  const int n = 2 * largest_offset + 1;
-  const int k = ((offset[0] + largest_offset) * n + offset[1] + largest_offset) * n + offset[2] + largest_offset;
-  return far_number[static_cast<std::size_t>(k)];
-}
-
-void MultipoleStress::compute_moments()
-{
-  const Stopwatch watch(seconds.upward);
-  for (std::size_t level = tree.levels().size() - 1; level-- > 0;)
-  {
-#pragma omp parallel for schedule(dynamic, 8)
-    for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
-      moments_of(i);
-  }
-}
-
-void MultipoleStress::moments_of(const std::size_t index)
-{
-  const Box &box = tree.boxes()[index];
-  if (box.n_lines() == 0)
-    return;
-  const Vec3 centre = tree.centre(box);
   const std::span own(sources.data() + box.lines_begin, box.own_lines_end - box.lines_begin);
-  add_moments(expansion_order_, 0.1 * settings.tolerance, centre, tree.size(box), own, multipole.of(index));
-  for (std::size_t i = box.first_child; i < box.first_child + box.n_children; ++i)
-  {
-    const Box &child = tree.boxes()[i];
-    if (child.n_lines() > 0)
-      translate_box(to_parent[octant_of(child)], centre - tree.centre(child), multipole.fields(i), multipole.q(i),
-                    multipole.of(index));
-  }
+  add_moments(order(), 0.1 * tolerance(), octree().centre(box), octree().size(box), own, moments);
 }
 
-void MultipoleStress::translate_far()
+void MultipoleStress::add_distant(const Box &box, const ExpansionView &expansion) const
 {
-  const Stopwatch watch(seconds.translations);
-  for (std::size_t level = 0; level + 1 < tree.levels().size(); ++level)
-  {
-    const std::uint32_t begin = tree.levels()[level], end = tree.levels()[level + 1];
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::uint32_t b = begin; b < end; b += boxes_per_chunk)
-      translate_chunk(b, std::min(b + boxes_per_chunk, end));
-  }
-}
-
-void MultipoleStress::translate_chunk(const std::uint32_t begin, const std::uint32_t end)
-{
-  std::vector<Task> tasks;
-  for (std::uint32_t i = begin; i < end; ++i)
-    if (wanted[i] != 0)
-      for (const FarLink &l : tree.far_links(i))
-        tasks.push_back({far_translation(l.offset), i, l.box});
-  std::sort(tasks.begin(), tasks.end());
-  for (std::size_t first = 0, last = 0; first < tasks.size(); first = last)
-  {
-    while (last < tasks.size() && last - first < row_width && tasks[last].translation == tasks[first].translation)
-      ++last;
-    const Translation &translation = far[tasks[first].translation];
-    for (std::size_t k = first; k < last; ++k)
-      translation.add(multipole.fields(tasks[k].source), local.of(tasks[k].target).fields);
-    add_far_q(translation, std::span(tasks).subspan(first, last - first));
-  }
-}
-
-void MultipoleStress::add_far_q(const Translation &translation, const std::span<const Task> tasks)
-{
-  const std::size_t n = n_harmonics(translation.order());
-  const Vec3 shift = tree.size(tree.boxes()[tasks[0].target]) * translation.vector();
-  alignas(row_size) Row in[n_harmonics(max_order)] = {};
-  alignas(row_size) Row out[n_harmonics(max_order)];
-  std::fill(out, out + n, Row{});
-  double moved[n_harmonics(max_order)];
-  for (std::size_t i = 0; i < tasks.size(); ++i)
-  {
-    move_reference_point(n, shift, multipole.fields(tasks[i].source), multipole.q(tasks[i].source), moved);
-    for (std::size_t k = 0; k < n; ++k)
-      in[k][i] = moved[k];
-  }
-  translation.add(in, out);
-  for (std::size_t i = 0; i < tasks.size(); ++i)
-  {
-    double *const q = local.of(tasks[i].target).q;
-    for (std::size_t k = 0; k < n; ++k)
-      q[k] += out[k][i];
-  }
-}
-
-void MultipoleStress::pass_down()
-{
-  const Stopwatch watch(seconds.downward);
-  for (std::size_t level = 0; level + 1 < tree.levels().size(); ++level)
-  {
-#pragma omp parallel for schedule(dynamic, 8)
-    for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
-      if (wanted[i] != 0)
-        pass_down_to(i);
-  }
-}
-
-void MultipoleStress::pass_down_to(const std::size_t index)
-{
-  const Box &box = tree.boxes()[index];
-  const Vec3 centre = tree.centre(box);
-  if (box.level > 0)
-    translate_box(to_child[octant_of(box)], centre - tree.centre(tree.boxes()[box.parent]), local.fields(box.parent),
-                  local.q(box.parent), local.of(index));
   if (box.level == level_of_distant_rays)
-    add_local_of_rays(expansion_order_, centre, tree.size(box), rays, local.of(index));
+    add_local_of_rays(order(), octree().centre(box), octree().size(box), rays, expansion);
 }
 
-StressBatch MultipoleStress::batch_of(const Box &box)
+void MultipoleStress::add_far(const Box &leaf, const Row *const fields, const double *const q)
 {
-  StressBatch batch{box.n_points(), {}, {}};
-  for (std::size_t c = 0; c < 3; ++c)
-    batch.x[c] = x[c].data() + box.points_begin;
-  for (std::size_t c = 0; c < 6; ++c)
-    batch.value[c] = sigma[c].data() + box.points_begin;
-  return batch;
+  LocalStress(medium, order(), octree().centre(leaf), octree().size(leaf), fields, q).add(batch_of<6>(leaf));
 }
 
-void MultipoleStress::evaluate_far(const std::size_t leaf)
+void MultipoleStress::add_near(const std::size_t leaf)
 {
-  const Box &box = tree.boxes()[leaf];
-  LocalStress(medium, expansion_order_, tree.centre(box), tree.size(box), local.fields(leaf), local.q(leaf))
-      .add(batch_of(box));
-}
-
-void MultipoleStress::evaluate_near(const std::size_t leaf)
-{
-  std::vector<std::vector<unsigned>> near(tree.image_shifts().size()); // by image
-  for (std::size_t i = leaf;; i = tree.boxes()[i].parent)
-  {
-    for (const NearLink &link : tree.near_links(i))
-    {
-      const Box &source = tree.boxes()[link.box];
-      for (unsigned k = source.lines_begin; k < (link.own_only ? source.own_lines_end : source.lines_end); ++k)
-        near[link.image].push_back(k);
-    }
-    if (tree.boxes()[i].level == 0)
-      break;
-  }
-  const StressBatch batch = batch_of(tree.boxes()[leaf]);
+  const Octree &boxes = octree();
+  std::vector<std::vector<unsigned>> near(boxes.image_shifts().size()); // by image
+  boxes.for_each_near_link(leaf,
+                           [&](const NearLink &link, const std::uint32_t begin, const std::uint32_t end)
+                           {
+                             for (std::uint32_t k = begin; k < end; ++k)
+                               near[link.image].push_back(k);
+                           });
+  const StressBatch batch = batch_of<6>(boxes.boxes()[leaf]);
   add_segment_stress(medium, line_table, near[0], batch);
   for (std::size_t image = 1; image < near.size(); ++image)
     if (!near[image].empty())
-      add_segment_stress(medium, line_table, near[image], ShiftedBatch(batch, -tree.image_shifts()[image]).batch);
-  if (tree.boxes()[leaf].level < level_of_distant_rays)
+      add_segment_stress(medium, line_table, near[image], ShiftedBatch(batch, -boxes.image_shifts()[image]).batch);
+  if (boxes.boxes()[leaf].level < level_of_distant_rays)
     add_ray_stress(medium, ray_table, batch);
-}
-
-double MultipoleStress::work(const std::size_t leaf) const
-{
-  const auto n_points = static_cast<double>(tree.boxes()[leaf].n_points());
-  double sum = translation_cost(expansion_order_);
-  for (std::size_t i = leaf;; i = tree.boxes()[i].parent)
-  {
-    for (const NearLink &l : tree.near_links(i))
-      sum += n_points * static_cast<double>(tree.boxes()[l.box].n_lines());
-    const double part = n_points / static_cast<double>(tree.boxes()[i].n_points());
-    sum += 0.4 * part * translation_cost(expansion_order_) * static_cast<double>(tree.far_links(i).size());
-    if (tree.boxes()[i].level == 0)
-      return sum;
-  }
-}
-
-void MultipoleStress::choose_share(MPI_Comm comm)
-{
-  int initialised = 0, rank = 0, n_ranks = 1;
-  MPI_Initialized(&initialised);
-  if (initialised != 0)
-  {
-    MPI_Comm_rank(comm, &rank);
-    MPI_Comm_size(comm, &n_ranks);
-  }
-  std::vector<double> until{0.0};
-  for (const std::uint32_t leaf : leaves)
-    until.push_back(until.back() + work(leaf));
-  share.clear();
-  for (int r = 0; r <= n_ranks; ++r)
-  {
-    const double limit = until.back() * r / n_ranks;
-    share.push_back(static_cast<std::size_t>(std::lower_bound(until.begin(), until.end(), limit) - until.begin()));
-  }
-  share.back() = leaves.size();
-  first_leaf = share[static_cast<std::size_t>(rank)];
-  last_leaf = share[static_cast<std::size_t>(rank) + 1];
-  wanted.assign(tree.boxes().size(), 0);
-  for (std::size_t k = first_leaf; k < last_leaf; ++k)
-    for (std::size_t i = leaves[k]; wanted[i] == 0; i = tree.boxes()[i].parent)
-      wanted[i] = 1;
 }
 
 std::vector<SymTensor> MultipoleStress::stress(MPI_Comm comm, const Part part)
 {
-  choose_share(comm);
-  for (std::vector<double> &s : sigma)
-    s.assign(tree.point_order().size(), 0.0);
-  if (part != Part::near)
-  {
-    multipole = local = Expansions(tree.boxes().size(), expansion_order_);
-    compute_moments();
-    translate_far();
-    pass_down();
-    const Stopwatch watch(seconds.points);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t k = first_leaf; k < last_leaf; ++k)
-      evaluate_far(leaves[k]);
-  }
-  if (part != Part::far)
-  {
-    const Stopwatch watch(seconds.near);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t k = first_leaf; k < last_leaf; ++k)
-      evaluate_near(leaves[k]);
-  }
-  return gather(comm);
-}
-
-std::vector<SymTensor> MultipoleStress::gather(MPI_Comm comm)
-{
-  if (share.size() > 2)
-  {
-    std::vector<int> counts, offsets;
-    const auto first_point = [&](std::size_t leaf)
-    { return leaf < leaves.size() ? tree.boxes()[leaves[leaf]].points_begin : tree.point_order().size(); };
-    for (std::size_t r = 0; r + 1 < share.size(); ++r)
-    {
-      offsets.push_back(static_cast<int>(first_point(share[r])));
-      counts.push_back(static_cast<int>(first_point(share[r + 1]) - first_point(share[r])));
-    }
-    for (std::vector<double> &s : sigma)
-      MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, s.data(), counts.data(), offsets.data(), MPI_DOUBLE, comm);
-  }
-  std::vector<SymTensor> values(tree.point_order().size());
-  for (std::size_t k = 0; k < values.size(); ++k)
+  compute(comm, part);
+  const std::vector<std::uint32_t> &order_of_points = octree().point_order();
+  std::vector<SymTensor> result(order_of_points.size());
+  for (std::size_t k = 0; k < result.size(); ++k)
     for (std::size_t c = 0; c < 6; ++c)
-      values[tree.point_order()[k]][static_cast<int>(c)] = sigma[c][k];
-  return values;
+      result[order_of_points[k]][static_cast<int>(c)] = value(k, c);
+  return result;
 }
 } // namespace ddfem::fmm

@@ -39,7 +39,16 @@ int octant(const Vec3 &x, const Vec3 &centre)
 }
 } // namespace
 
-Octree::Octree(const RootGrid &grid_, const std::span<const LineSource> lines, const std::span<const Vec3> points,
+std::vector<SourceExtent> extents_of(const std::span<const LineSource> lines)
+{
+  std::vector<SourceExtent> extents;
+  extents.reserve(lines.size());
+  for (const LineSource &l : lines)
+    extents.push_back({0.5 * (l.start + l.end), (l.end - l.start).norm()});
+  return extents;
+}
+
+Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> sources, const std::span<const Vec3> points,
                const TreeSettings &settings_)
     : grid(grid_), settings(settings_), shifts{Vec3::Zero()}
 {
@@ -51,7 +60,7 @@ Octree::Octree(const RootGrid &grid_, const std::span<const LineSource> lines, c
         const int i = k / 9 - 1, j = k / 3 % 3 - 1, l = k % 3 - 1;
         shifts.emplace_back(period.cwiseProduct(Vec3(i, j, l)));
       }
-  sort_into_roots(lines, points);
+  sort_into_roots(sources, points);
   Neighbours neighbours(all.size());
   pair_roots(neighbours);
   while (level_begin.back() > level_begin[level_begin.size() - 2])
@@ -74,16 +83,16 @@ Octree::Octree(const RootGrid &grid_, const std::span<const LineSource> lines, c
     spheres.push_back({line_middle[i][0], line_middle[i][1], line_middle[i][2], 0.5 * line_length[i]});
 }
 
-void Octree::sort_into_roots(const std::span<const LineSource> lines, const std::span<const Vec3> points)
+void Octree::sort_into_roots(const std::span<const SourceExtent> sources, const std::span<const Vec3> points)
 {
-  for (const LineSource &l : lines)
+  for (const SourceExtent &s : sources)
   {
-    line_middle.emplace_back(0.5 * (l.start + l.end));
-    line_length.push_back((l.end - l.start).norm());
+    line_middle.push_back(s.middle);
+    line_length.push_back(s.length);
     longest_of_all = std::max(longest_of_all, line_length.back());
   }
   point.assign(points.begin(), points.end());
-  line_at.resize(lines.size());
+  line_at.resize(sources.size());
   point_at.resize(points.size());
   std::iota(line_at.begin(), line_at.end(), 0U);
   std::iota(point_at.begin(), point_at.end(), 0U);
@@ -99,7 +108,7 @@ void Octree::sort_into_roots(const std::span<const LineSource> lines, const std:
   };
   const int volume = grid.n[0] * grid.n[1] * grid.n[2];
   const auto n_roots = static_cast<std::size_t>(volume);
-  const auto line_limits = sort_by_key(line_at, 0, static_cast<std::uint32_t>(lines.size()), n_roots,
+  const auto line_limits = sort_by_key(line_at, 0, static_cast<std::uint32_t>(sources.size()), n_roots,
                                        [&](std::uint32_t i) { return root_of(line_middle[i]); });
   const auto point_limits = sort_by_key(point_at, 0, static_cast<std::uint32_t>(points.size()), n_roots,
                                         [&](std::uint32_t i) { return root_of(point[i]); });

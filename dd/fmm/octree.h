@@ -10,6 +10,15 @@
 
 namespace ddfem::fmm
 {
+/// Where a source is, as the tree sees it.
+struct SourceExtent
+{
+  Vec3 middle;
+  double length; ///< of a line; twice the radius around the middle of anything else, nm
+};
+
+std::vector<SourceExtent> extents_of(std::span<const LineSource> lines);
+
 /// The boxes of level 0: a grid of n[0] x n[1] x n[2] boxes with edge lengths `edges` (nm).
 struct RootGrid
 {
@@ -62,7 +71,7 @@ struct TreeSettings
 class Octree
 {
 public:
-  Octree(const RootGrid &grid, std::span<const LineSource> lines, std::span<const Vec3> points,
+  Octree(const RootGrid &grid, std::span<const SourceExtent> sources, std::span<const Vec3> points,
          const TreeSettings &settings);
 
   /// Level by level; children of a box are contiguous.
@@ -86,6 +95,10 @@ public:
   /// length, in a fixed order.
   template <class Visit> void for_each_line_near(const Vec3 &x, double radius, Visit &&visit) const;
 
+  /// Calls visit(link, begin, end) for every link that acts on the points of a leaf, its own and those of the boxes that contain it;
+  /// [begin, end): its lines, in the tree's order.
+  template <class Visit> void for_each_near_link(std::size_t leaf, Visit &&visit) const;
+
 private:
   template <class Visit>
   void visit_lines(const Box &box, const Vec3 &x, double radius, std::size_t image, Visit &visit) const;
@@ -98,7 +111,7 @@ private:
   };
   using Neighbours = std::vector<std::vector<Neighbour>>;
 
-  void sort_into_roots(std::span<const LineSource> lines, std::span<const Vec3> points);
+  void sort_into_roots(std::span<const SourceExtent> sources, std::span<const Vec3> points);
   void pair_roots(Neighbours &neighbours);
   bool is_worth_dividing(std::size_t box, const std::vector<Neighbour> &neighbours) const;
   void divide(std::size_t box);
@@ -124,6 +137,21 @@ private:
   std::vector<LineSphere> spheres;
   double longest_of_all = 0; ///< line, nm
 };
+
+template <class Visit> void Octree::for_each_near_link(const std::size_t leaf, Visit &&visit) const
+{
+  for (std::size_t i = leaf;; i = all[i].parent)
+  {
+    for (const NearLink &link : near[i])
+    {
+      const Box &source = all[link.box];
+      visit(link, source.lines_begin, link.own_only ? source.own_lines_end : source.lines_end);
+    }
+    if (all[i].level == 0)
+      return;
+  }
+}
+
 template <class Visit> void Octree::for_each_line_near(const Vec3 &x, const double radius, Visit &&visit) const
 {
   for (std::size_t image = 0; image < shifts.size(); ++image)

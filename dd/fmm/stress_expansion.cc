@@ -1,6 +1,7 @@
 #include "dd/fmm/stress_expansion.h"
 
 #include "dd/elasticity/gauss.h"
+#include "dd/fmm/expansion_loops.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,64 +54,6 @@ struct LineBlock
   }
 };
 
-/// Gauss points per line: the remainder of an n-point rule falls like (length/size)^2n, and at this order no more than
-/// order/2 + 1 points can be needed.
-int n_points_along(const int order, const double tolerance, const double longest)
-{
-  const int exact = order / 2 + 1;
-  if (longest >= 1.0)
-    return exact;
-  const double n = std::log(tolerance) / (2 * std::log(std::max(longest, 1e-6)));
-  return std::clamp(static_cast<int>(std::ceil(n)), 1, exact);
-}
-
-DDFEM_FMM_EVERY_PROCESSOR
-void add_weighted(const std::size_t n, const double weight, const Row *values, Row *sum)
-{
-  for (std::size_t k = 0; k < n; ++k)
-    sum[k] += weight * values[k];
-}
-
-DDFEM_FMM_EVERY_PROCESSOR
-void add_outer_products(const std::size_t n, const Row *line_moments, const Row *strength, const Row *q_strength,
-                        Row *fields, double *q)
-{
-  for (std::size_t k = 0; k < n; ++k)
-  {
-    const Row moment = line_moments[k], of_q = moment * *q_strength;
-    Row sum = fields[k];
-    double q_sum = 0;
-    for (std::size_t i = 0; i < row_width; ++i)
-    {
-      sum += moment[i] * strength[i];
-      q_sum += of_q[i];
-    }
-    fields[k] = sum;
-    q[k] += q_sum;
-  }
-}
-
-/// d/dx_axis of the expansion.
-RowBuffer derivative(const std::vector<GradientTerm> &terms, const RowBuffer &expansion)
-{
-  RowBuffer result(expansion.size());
-  for (const GradientTerm &t : terms)
-    result.rows()[t.to] += t.factor * expansion.rows()[t.from];
-  return result;
-}
-
-const std::array<std::vector<GradientTerm>, 3> &known_gradient_terms(const int order)
-{
-  static const auto all = []
-  {
-    std::vector<std::array<std::vector<GradientTerm>, 3>> terms;
-    for (int p = 0; p <= max_order; ++p)
-      terms.push_back(gradient_terms(p));
-    return terms;
-  }();
-  return all[static_cast<std::size_t>(order)];
-}
-
 /// First derivatives of P and S that make up the stress, one harmonic: g[i] is the row of d/dx_i.
 void add_first_derivatives(const double m, const double factor, const Row (&g)[3], double *const stress)
 {
@@ -134,26 +77,6 @@ void add_first_derivatives(const double m, const double factor, const Row (&g)[3
           factor * (curl(a, b) + curl(b, a) + (m - 0.5) * (P(a, b) + P(b, a)) + (a == b ? (1 - 2 * m) * div : 0.0));
 }
 
-/// Eight points at once. @p coefficients: 24 numbers per harmonic; @p y: (x - centre)/size; @p stress: six rows.
-DDFEM_FMM_EVERY_PROCESSOR
-void contract_harmonics(const std::size_t n, const Row *harmonics, const Row *coefficients, const Row *y, Row *stress)
-{
-  Row sum[24];
-  for (std::size_t part = 0; part < 3; ++part)
-  {
-    Row s[row_width] = {};
-    for (std::size_t k = 0; k < n; ++k)
-    {
-      const Row h = harmonics[k], c = coefficients[3 * k + part];
-      for (std::size_t i = 0; i < row_width; ++i)
-        s[i] += c[i] * h;
-    }
-    for (std::size_t i = 0; i < row_width; ++i)
-      sum[part * row_width + i] = s[i];
-  }
-  for (std::size_t c = 0; c < 6; ++c)
-    stress[c] = sum[c] + y[0] * sum[6 + c] + y[1] * sum[12 + c] + y[2] * sum[18 + c];
-}
 } // namespace
 
 void add_moments(const int order, const double tolerance, const Vec3 &centre, const double size,

@@ -12,8 +12,8 @@
 // dipole, Q -> Q - a^2/2 div P. A move of x0 by D changes Q to Q - D.P.
 #pragma once
 
-#include "dd/elasticity/segment_stress.h"
 #include "dd/elasticity/point_batch.h"
+#include "dd/elasticity/segment_stress.h"
 #include "dd/fmm/solid_harmonics.h"
 
 #include <span>

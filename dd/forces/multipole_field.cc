@@ -36,7 +36,7 @@ MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const 
     for (Vec3 &x : points)
       x += cell->shift_into_cell(x);
   const fmm::RootGrid grid =
-      cell ? fmm::periodic_grid(cell->origin, cell->lengths) : fmm::enclosing_grid(lines, rays, points);
+      cell ? fmm::periodic_grid(cell->origin, cell->lengths) : fmm::enclosing_grid(fmm::extents_of(lines), rays, points);
   const auto distant = fmm::cut_rays(rays, grid, mean_length(system.lines()), lines);
   expansions = std::make_unique<fmm::MultipoleStress>(system.medium(), settings, grid, lines, distant, points);
 }

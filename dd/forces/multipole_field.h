@@ -31,9 +31,13 @@ struct SummationSettings
   /// Above the size at which both methods take the same time.
   std::size_t multipole_from = 2000;
 
-  bool use_multipoles(std::size_t n_lines) const
+  bool use_multipoles(std::size_t n_lines) const { return use_multipoles(n_lines, n_lines); }
+  /// For fields at other points than on the lines: the same number of pairs.
+  bool use_multipoles(std::size_t n_sources, std::size_t n_points) const
   {
-    return method == SummationMethod::multipole || (method == SummationMethod::automatic && n_lines >= multipole_from);
+    const auto pairs = static_cast<double>(n_sources) * static_cast<double>(n_points);
+    const auto enough = static_cast<double>(multipole_from) * static_cast<double>(multipole_from);
+    return method == SummationMethod::multipole || (method == SummationMethod::automatic && pairs >= enough);
   }
 };
 

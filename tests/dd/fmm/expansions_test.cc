@@ -306,7 +306,7 @@ TEST(Octree, EveryLineActsOnceOnEveryPoint)
     for (const auto &n : {std::array{1, 1, 1}, std::array{2, 3, 1}})
     {
       const RootGrid grid{Vec3(-1, -1, -1), Vec3(2.0 / n[0], 2.0 / n[1], 2.0 / n[2]), n, periodic};
-      const Octree tree(grid, lines, points, settings);
+      const Octree tree(grid, extents_of(lines), points, settings);
       EXPECT_GT(tree.levels().size(), 6U);
       std::size_t n_points = 0;
       for (std::size_t i = 0; i < tree.boxes().size(); ++i)
@@ -332,7 +332,7 @@ TEST(Octree, HoldsLongLinesInLargeBoxes)
   }
   TreeSettings settings;
   settings.translation_cost = std::vector<double>(28, 20.0);
-  const Octree tree({Vec3(-1, -1, -1), Vec3(2, 2, 2), {1, 1, 1}, false}, lines, points, settings);
+  const Octree tree({Vec3(-1, -1, -1), Vec3(2, 2, 2), {1, 1, 1}, false}, extents_of(lines), points, settings);
   for (const Box &box : tree.boxes())
     if (box.level > 0)
       for (std::uint32_t k = box.lines_begin; k < box.lines_end; ++k)

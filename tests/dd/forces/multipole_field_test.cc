@@ -93,7 +93,7 @@ TEST(MultipoleField, ReachesTheRequestedErrorOfTheStress)
       const fmm::MultipoleSettings settings{tolerance, 0, depth_factor(tolerance)};
       MultipoleField field(system, points, settings);
       const auto value = some_of(field.stress(MPI_COMM_SELF), stride);
-      const auto far = some_of(field.sum().stress(MPI_COMM_SELF, fmm::MultipoleStress::Part::far), stride);
+      const auto far = some_of(field.sum().stress(MPI_COMM_SELF, fmm::Part::far), stride);
       const Errors e = compare(value, exact);
       print("stress", lines, tolerance, e, rms(far), rms(exact));
       EXPECT_LT(e.rms, tolerance * rms(far)) << lines.name << ' ' << tolerance;
@@ -113,7 +113,7 @@ std::vector<Vec3> far_forces(const LineSystem &system, const double tolerance)
     for (const double z : rule.points)
       points.emplace_back(l.start + z * (l.end - l.start));
   MultipoleField field(system, points, {tolerance, 0, depth_factor(tolerance)});
-  const auto far = field.sum().stress(MPI_COMM_SELF, fmm::MultipoleStress::Part::far);
+  const auto far = field.sum().stress(MPI_COMM_SELF, fmm::Part::far);
   for (std::size_t i = 0; i < system.lines().size(); ++i)
   {
     const StraightLine &l = system.lines()[i];
@@ -199,7 +199,7 @@ TEST(MultipoleField, OfAPeriodicCellIsTheDirectSum)
     const auto points = points_among(system, 1500), sample = some_of(points, 15);
     const auto exact = system.stress(sample);
     MultipoleField field(system, points, {1e-4});
-    const auto far = field.sum().stress(MPI_COMM_SELF, fmm::MultipoleStress::Part::far);
+    const auto far = field.sum().stress(MPI_COMM_SELF, fmm::Part::far);
     const Errors e = compare(some_of(field.stress(MPI_COMM_SELF), 15), exact);
     EXPECT_LT(e.rms, 1e-4 * rms(far)) << lengths.transpose();
   }

@@ -1,0 +1,31 @@
+// The loops that the expansions of stress and displacement share. Internal to dd/fmm.
+#pragma once
+
+#include "dd/fmm/solid_harmonics.h"
+
+#include <array>
+#include <vector>
+
+namespace ddfem::fmm
+{
+/// Gauss points along a source of length @p longest (over the box size): the remainder of an n-point rule falls like longest^2n, and at
+/// this order no more than order/2 + 1 points can be needed.
+int n_points_along(int order, double tolerance, double longest);
+
+/// sum += weight values: @p n rows.
+void add_weighted(std::size_t n, double weight, const Row *values, Row *sum);
+
+/// Adds the moments of eight sources: row k of @p source_moments holds moment k of each; @p strength: of the eight fields, a row per
+/// source; @p q_strength: of Q.
+void add_outer_products(std::size_t n, const Row *source_moments, const Row *strength, const Row *q_strength,
+                        Row *fields, double *q);
+
+/// d/dx_axis of an expansion in regular harmonics.
+RowBuffer derivative(const std::vector<GradientTerm> &terms, const RowBuffer &expansion);
+/// gradient_terms(), kept.
+const std::array<std::vector<GradientTerm>, 3> &known_gradient_terms(int order);
+
+/// Eight points at once. @p coefficients: 24 numbers per harmonic, four groups c of six; @p y: (x - centre)/size; the result, six rows:
+/// c_0 + y_0 c_1 + y_1 c_2 + y_2 c_3.
+void contract_harmonics(std::size_t n, const Row *harmonics, const Row *coefficients, const Row *y, Row *result);
+} // namespace ddfem::fmm

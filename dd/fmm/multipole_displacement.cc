@@ -1,0 +1,68 @@
+#include "dd/fmm/multipole_displacement.h"
+
+#include "dd/elasticity/vectorised/displacement_kernels.h"
+#include "dd/fmm/displacement_expansion.h"
+#include "dd/fmm/grids_and_rays.h"
+
+#include <algorithm>
+
+namespace ddfem::fmm
+{
+namespace
+{
+std::vector<SourceExtent> extents_of(const std::span<const TriangularLoop> loops)
+{
+  std::vector<SourceExtent> extents;
+  extents.reserve(loops.size());
+  for (const TriangularLoop &l : loops)
+  {
+    const Vec3 middle = (l.vertices[0].value + l.vertices[1].value + l.vertices[2].value) / 3;
+    double radius = 0;
+    for (const LoopVertex &v : l.vertices)
+      radius = std::max(radius, (v.value - middle).norm());
+    extents.push_back({middle, 2 * radius});
+  }
+  return extents;
+}
+} // namespace
+
+MultipoleDisplacement::MultipoleDisplacement(const double nu_, const MultipoleSettings &given,
+                                             const std::span<const TriangularLoop> loops,
+                                             const std::span<const Vec3> points)
+    : MultipoleSum(given, enclosing_grid(extents_of(loops), {}, points), extents_of(loops), points, 0.0, 3), nu(nu_)
+{
+  sources.reserve(loops.size());
+  for (const std::uint32_t i : octree().line_order())
+    sources.push_back(loops[i]);
+}
+
+void MultipoleDisplacement::add_own_moments(const Box &box, const ExpansionView &moments) const
+{
+  const std::span own(sources.data() + box.lines_begin, box.own_lines_end - box.lines_begin);
+  add_moments(order(), 0.1 * tolerance(), nu, octree().centre(box), octree().size(box), own, moments);
+}
+
+void MultipoleDisplacement::add_far(const Box &leaf, const Row *const fields, const double *const q)
+{
+  LocalDisplacement(nu, order(), octree().centre(leaf), octree().size(leaf), fields, q).add(batch_of<3>(leaf));
+}
+
+void MultipoleDisplacement::add_near(const std::size_t leaf)
+{
+  const DisplacementBatch batch = batch_of<3>(octree().boxes()[leaf]);
+  octree().for_each_near_link(leaf,
+                              [&](const NearLink &, const std::uint32_t begin, const std::uint32_t end) {
+                                add_triangle_displacement(nu, std::span(sources).subspan(begin, end - begin), batch);
+                              });
+}
+
+std::vector<Vec3> MultipoleDisplacement::displacement(MPI_Comm comm, const Part part)
+{
+  compute(comm, part);
+  const std::vector<std::uint32_t> &order_of_points = octree().point_order();
+  std::vector<Vec3> result(order_of_points.size());
+  for (std::size_t k = 0; k < result.size(); ++k)
+    result[order_of_points[k]] = Vec3(value(k, 0), value(k, 1), value(k, 2));
+  return result;
+}
+} // namespace ddfem::fmm
