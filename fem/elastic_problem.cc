@@ -184,7 +184,7 @@ void ElasticProblem::set_field_load(const std::vector<double> &values)
 std::vector<std::vector<double>> ElasticProblem::start_vectors() const
 {
   std::vector<std::vector<double>> values;
-  for (const NodalVector *const vector : implementation->starts.vectors())
+  for (const NodalVector *const vector : implementation->starts.state())
   {
     values.push_back(implementation->owned(*vector));
   }
@@ -193,11 +193,12 @@ std::vector<std::vector<double>> ElasticProblem::start_vectors() const
 
 void ElasticProblem::set_start_vectors(const std::vector<std::vector<double>> &vectors)
 {
-  implementation->starts.clear();
-  for (auto v = vectors.rbegin(); v != vectors.rend(); ++v)
+  std::vector<NodalVector> state;
+  for (const auto &v : vectors)
   {
-    implementation->starts.remember(implementation->from_owned(*v));
+    state.push_back(implementation->from_owned(v));
   }
+  implementation->starts.restore(state);
 }
 
 std::string ElasticProblem::write_surface(const std::string &directory, const std::string &base_name,

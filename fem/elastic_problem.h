@@ -164,11 +164,10 @@ public:
   /// Replaces that load (for reactions and the next solve). Throws std::invalid_argument for a wrong size.
   void set_field_load(const std::vector<double> &values);
 
-  /// What the next solve starts from: locally owned unknowns of at most
-  /// Parameters::n_start_vectors solutions, the most recent first. With the
-  /// same mesh and number of ranks a restart that puts them back continues bit by bit. Local.
+  /// What the next solve starts from: two vectors of locally owned numbers for each of at most Parameters::n_start_vectors
+  /// solutions. With the same mesh and number of ranks a restart that puts them back continues bit by bit. Local.
   std::vector<std::vector<double>> start_vectors() const;
-  /// Throws std::invalid_argument for a wrong size.
+  /// Those, or none: the next solve starts from zero. Collective. Throws std::invalid_argument for a wrong size.
   void set_start_vectors(const std::vector<std::vector<double>> &vectors);
 
   /// Writes the surface: `base_name`.pvtu in `directory` and a .vtu for each rank, in SI units: points (m), total

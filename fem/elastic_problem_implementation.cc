@@ -107,12 +107,15 @@ SolveInfo ElasticProblem::Implementation::solve(const std::vector<dealii::Tensor
   if (norm > nothing)
   {
     x = starts.best(load);
-    const auto convergence = system.solve(x, load, parameters.relative_tolerance * norm, parameters.max_iterations);
+    NodalVector residual = system.make_vector();
+    const auto convergence =
+        system.solve(x, residual, load, parameters.relative_tolerance * norm, parameters.max_iterations);
     info.iterations = convergence.iterations;
     info.initial_residual = convergence.initial_residual / norm;
     info.final_residual = convergence.final_residual / norm;
     info.unbalanced_load = removed / given_norm;
-    starts.remember(x);
+    load -= residual;
+    starts.remember(x, load);
   }
   total += x;
   set_displacement(total);

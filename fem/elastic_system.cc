@@ -246,21 +246,16 @@ void ElasticSystem::remove_rigid_motion(NodalVector &displacement) const
   }
 }
 
-void ElasticSystem::multiply(NodalVector &result, const NodalVector &vector) const
-{
-  matrix.vmult(result, vector);
-}
-
 void ElasticSystem::precondition(NodalVector &result, const NodalVector &residual) const
 {
   preconditioner->apply(result, residual);
   remove_rigid_motion(result);
 }
 
-ElasticSystem::Convergence ElasticSystem::solve(NodalVector &x, const NodalVector &load, double tolerance,
-                                                unsigned max_iterations) const
+ElasticSystem::Convergence ElasticSystem::solve(NodalVector &x, NodalVector &r, const NodalVector &load,
+                                                double tolerance, unsigned max_iterations) const
 {
-  NodalVector r = make_vector(), z = make_vector(), p = make_vector(), product = make_vector();
+  NodalVector z = make_vector(), p = make_vector(), product = make_vector();
   matrix.vmult(r, x);
   r.sadd(-1., 1., load);
   Convergence info{0, r.l2_norm(), r.l2_norm()};

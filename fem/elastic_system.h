@@ -44,11 +44,10 @@ public:
   /// Removes the free modes from a displacement (in the sense of the volume integral).
   void remove_rigid_motion(NodalVector &displacement) const;
 
-  /// Product with the stiffness between free unknowns.
-  void multiply(NodalVector &result, const NodalVector &vector) const;
   /// Preconditioned conjugate gradients for K x = load from the given x, until the norm of the residual is at most
-  /// `tolerance`. `load` is self-equilibrated. Throws std::runtime_error without convergence.
-  Convergence solve(NodalVector &x, const NodalVector &load, double tolerance, unsigned max_iterations) const;
+  /// `tolerance`. `load` is self-equilibrated. `residual` becomes load - K x. Throws std::runtime_error without convergence.
+  Convergence solve(NodalVector &x, NodalVector &residual, const NodalVector &load, double tolerance,
+                    unsigned max_iterations) const;
 
   std::size_t n_free_modes() const { return modes.size(); }
 

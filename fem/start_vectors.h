@@ -3,6 +3,7 @@
 #include "fem/elastic_system.h"
 
 #include <cstddef>
+#include <deque>
 #include <vector>
 
 namespace ddfem::fem
@@ -19,22 +20,27 @@ public:
   /// good as the extrapolation by a polynomial through the kept solutions. Collective.
   NodalVector best(const NodalVector &load) const;
 
-  /// Takes a solution in as the most recent one. Collective.
-  void remember(const NodalVector &solution);
+  /// Takes a solution in as the most recent one, with its product with the stiffness. An error of the products would grow by
+  /// extrapolation from step to step; load minus residual is good enough if the residual was computed from the start vector. Collective.
+  void remember(const NodalVector &solution, const NodalVector &product);
 
-  void clear() { starts.clear(); }
-
-  /// The vectors, the most recent first.
-  std::vector<const NodalVector *> vectors() const;
+  /// Everything that is kept, and the same back: changes and their products by turns. Restoring is collective.
+  std::vector<const NodalVector *> state() const;
+  void restore(const std::vector<NodalVector> &state);
 
 private:
-  struct Start
+  struct Change
   {
     NodalVector vector, product; // and the stiffness times it
   };
 
+  void multiply_from(std::size_t first, std::size_t last);
+
   const ElasticSystem &system;
   std::size_t most;
-  std::vector<Start> starts; // most recent first
+  /// The latest solution, and then of each earlier one the difference from its successor. With these instead of the solutions themselves, which
+  /// are nearly equal, the products below keep the digits that tell them apart.
+  std::deque<Change> changes;
+  std::vector<std::vector<double>> products; // of each two of them, in energy
 };
 } // namespace ddfem::fem

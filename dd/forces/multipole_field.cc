@@ -35,8 +35,8 @@ MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const 
   if (cell)
     for (Vec3 &x : points)
       x += cell->shift_into_cell(x);
-  const fmm::RootGrid grid =
-      cell ? fmm::periodic_grid(cell->origin, cell->lengths) : fmm::enclosing_grid(fmm::extents_of(lines), rays, points);
+  const fmm::RootGrid grid = cell ? fmm::periodic_grid(cell->origin, cell->lengths)
+                                  : fmm::enclosing_grid(fmm::extents_of(lines), rays, points);
   const auto distant = fmm::cut_rays(rays, grid, mean_length(system.lines()), lines);
   expansions = std::make_unique<fmm::MultipoleStress>(system.medium(), settings, grid, lines, distant, points);
 }
