@@ -81,15 +81,6 @@ std::vector<Vec3> multipole_displacement(const double nu, const SweptLoops &swep
   const auto first = u.begin() + static_cast<std::ptrdiff_t>(all.first);
   return {first, first + static_cast<std::ptrdiff_t>(n_mine)};
 }
-
-Ball around(const TriangularLoop &t)
-{
-  const Vec3 centre = (t.vertices[0].value + t.vertices[1].value + t.vertices[2].value) / 3;
-  double radius = 0;
-  for (const LoopVertex &v : t.vertices)
-    radius = std::max(radius, (v.value - centre).norm());
-  return {centre, radius};
-}
 } // namespace
 
 std::vector<Vec3> swept_displacement(const double nu, const SweptLoops &swept, const std::span<const Vec3> points,
@@ -116,7 +107,7 @@ SweptDisplacement::SweptDisplacement(const SweptLoops &triangles, const double p
     return;
   std::vector<Ball> all;
   for (const TriangularLoop &t : swept.finite())
-    all.push_back(around(t));
+    all.push_back({t.middle(), t.radius()});
   balls = BallBlocks(all);
 }
 

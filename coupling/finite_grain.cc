@@ -4,16 +4,13 @@
 #include "coupling/dislocation_tractions.h"
 #include "coupling/face_displacements.h"
 #include "coupling/grain_geometry.h"
-#include "coupling/image_planes.h"
 #include "coupling/input_error.h"
-#include "dd/common/parallel.h"
 #include "dd/topology/growth.h"
 #include "fem/face_section.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <tuple>
 
 namespace ddfem::coupling
@@ -172,28 +169,6 @@ void FiniteGrain::find_platens(const GrainParameters &p)
   find_image_planes(facets);
 }
 
-void FiniteGrain::find_image_planes(const std::vector<PolyhedronShape::Facet> &facets)
-{
-  const auto is_held = [](const std::array<bool, 3> &components)
-  { return components[0] || components[1] || components[2]; };
-  std::set<int> held;
-  if (is_held(platen_motion->held_by_fixed_face(parameters.clamped)))
-    held.insert(static_cast<int>(fixed_face));
-  if (is_held(platen_motion->held_by_platen(parameters.clamped)))
-    held.insert(static_cast<int>(platen_face));
-  planes_of_images = image_planes(facets, held);
-  image_settings.depth = parameters.image_depth * facet_size(facets, planes_of_images);
-}
-
-void FiniteGrain::update_images(const LineSystem &lines)
-{
-  images = SurfaceImages(lines, planes_of_images, image_settings);
-  const ImageDisplacement field(images, axis, face_resolution, parameters.summation);
-  const std::vector<Vec3> u = field.at(boundary_nodes());
-  std::transform(u.begin(), u.end(), image_displacement.begin(), to_tensor);
-  project_where_held(field, image_displacement);
-}
-
 void FiniteGrain::describe_platen(const std::vector<PolyhedronShape::Facet> &facets)
 {
   const unsigned degree = parameters.elasticity.degree;
@@ -340,43 +315,11 @@ std::vector<SymTensor> FiniteGrain::stress_of_elements(const std::vector<Vec3> &
   return result;
 }
 
-void FiniteGrain::add_images(const std::vector<Vec3> &points, std::vector<SymTensor> &stress) const
-{
-  if (images.empty())
-    return;
-  std::vector<SymTensor> of_images(points.size());
-  const IndexRange owned = owned_range(points.size(), communicator);
-  const auto mine = ImageStress(images, medium.a)
-                        .at(std::span(points).subspan(owned.begin, owned.end - owned.begin), parameters.summation);
-  std::copy(mine.begin(), mine.end(), of_images.begin() + static_cast<std::ptrdiff_t>(owned.begin));
-  gather_owned(of_images, communicator);
-  for (std::size_t k = 0; k < points.size(); ++k)
-    stress[k] += of_images[k];
-}
-
 std::vector<SymTensor> FiniteGrain::correction_stress(const std::vector<Vec3> &points) const
 {
   std::vector<SymTensor> stress = stress_of_elements(points);
   add_images(points, stress);
   return stress;
-}
-
-SegmentField FiniteGrain::correction_at_segments(const Network &network) const
-{
-  SegmentPoints::SmoothLength smooth_length;
-  if (image_settings.depth > 0)
-    smooth_length = [&](const Vec3 &x)
-    {
-      double depth = image_settings.depth;
-      for (const ImagePlane &p : planes_of_images)
-        depth = std::min(depth, (p.point - x).dot(p.outward));
-      return std::max(depth, 0.0) + medium.a;
-    };
-  SegmentField field{SegmentPoints(network, smooth_length), {}, {}};
-  field.without_images = stress_of_elements(field.points.positions());
-  field.stress = field.without_images;
-  add_images(field.points.positions(), field.stress);
-  return field;
 }
 
 std::vector<Vec3> FiniteGrain::boundary_nodes() const

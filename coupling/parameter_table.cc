@@ -278,11 +278,14 @@ void add_numerics(std::vector<ParameterEntry> &t)
 {
   t.push_back({"Forces", "Pair tolerance", "1e-5", between(1e-12, 1e-1), "",
                "Error of the nodal forces between two segments relative to their largest component."});
-  t.push_back({"Forces", "Summation", "automatic", one_of("direct|multipole|automatic"), "",
-               "Forces and field points: every pair in closed form, a fast multipole method, or the latter from 2000 "
-               "segments."});
-  t.push_back({"Forces", "Far-field tolerance", "1e-3", between(1e-8, 1e-1), "",
-               "Error of the fast multipole method relative to the rms of the far field, about a fifth of the total."});
+  t.push_back(
+      {"Forces", "Summation", "automatic", one_of("direct|multipole|automatic"), "",
+       "Sums over lines, for forces, field points, tractions and displacements of the surface: every pair in closed "
+       "form (direct), a fast multipole method, or the latter if there are as many pairs as 2000 segments have."});
+  t.push_back(
+      {"Forces", "Far-field tolerance", "1e-3", between(1e-8, 1e-1), "",
+       "Error of the fast multipole method relative to the rms of the far field, about a fifth of the total; a tenth "
+       "of it on the surface."});
   const std::string s = "Time stepping";
   t.push_back({s, "Final time", "1e-6", positive(), "s", "The run ends at this time."});
   t.push_back({s, "Maximum steps", "1000000", count(1), "", "The run ends after this many steps."});

@@ -36,6 +36,14 @@ Vec3 to_vec3(const HWY_NAMESPACE::Vector<double> &v)
 }
 } // namespace
 
+double TriangularLoop::radius() const
+{
+  double largest = 0;
+  for (const LoopVertex &v : vertices)
+    largest = std::max(largest, (v.value - middle()).norm());
+  return largest;
+}
+
 TriangularLoop::TriangularLoop(const LoopVertex &v1, const LoopVertex &v2, const LoopVertex &v3, const Vec3 &b)
     : vertices{v1, v2, v3}, burgers(b)
 {

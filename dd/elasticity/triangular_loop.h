@@ -28,5 +28,9 @@ struct TriangularLoop
 
   /// At least one vertex must be finite.
   TriangularLoop(const LoopVertex &v1, const LoopVertex &v2, const LoopVertex &v3, const Vec3 &b);
+
+  /// Of a loop without vertices at infinity: their mean, and the largest distance of one of them from it, nm.
+  Vec3 middle() const { return (vertices[0].value + vertices[1].value + vertices[2].value) / 3; }
+  double radius() const;
 };
 } // namespace ddfem

@@ -4,8 +4,6 @@
 #include "dd/fmm/displacement_expansion.h"
 #include "dd/fmm/grids_and_rays.h"
 
-#include <algorithm>
-
 namespace ddfem::fmm
 {
 namespace
@@ -15,13 +13,7 @@ std::vector<SourceExtent> extents_of(const std::span<const TriangularLoop> loops
   std::vector<SourceExtent> extents;
   extents.reserve(loops.size());
   for (const TriangularLoop &l : loops)
-  {
-    const Vec3 middle = (l.vertices[0].value + l.vertices[1].value + l.vertices[2].value) / 3;
-    double radius = 0;
-    for (const LoopVertex &v : l.vertices)
-      radius = std::max(radius, (v.value - middle).norm());
-    extents.push_back({middle, 2 * radius});
-  }
+    extents.push_back({l.middle(), 2 * l.radius()});
   return extents;
 }
 } // namespace
