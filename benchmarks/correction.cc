@@ -209,13 +209,7 @@ private:
     records["residual at the start"].push_back(info.initial_residual);
   }
 
-  std::vector<Vec3> boundary_points() const
-  {
-    std::vector<Vec3> nodes;
-    for (const auto &p : problem->boundary_points())
-      nodes.push_back(coupling::to_vec3(p));
-    return nodes;
-  }
+  std::vector<Vec3> boundary_points() const { return coupling::to_vectors(problem->boundary_points()); }
 
   void update_images(const LineSystem &lines)
   {
@@ -228,14 +222,7 @@ private:
   /// At the points that FiniteGrain::correction_at_segments takes, divided among the ranks as there.
   void stress_of_images(const Network &network) const
   {
-    const auto smooth_length = [&](const Vec3 &x)
-    {
-      double depth = image_settings.depth;
-      for (const ImagePlane &p : planes)
-        depth = std::min(depth, (p.point - x).dot(p.outward));
-      return std::max(depth, 0.0) + medium.a;
-    };
-    const SegmentPoints dense(network, smooth_length);
+    const SegmentPoints dense(network, coupling::smooth_length_under(planes, image_settings.depth, medium.a));
     const IndexRange owned = owned_range(dense.positions().size(), MPI_COMM_WORLD);
     coupling::ImageStress(images, medium.a)
         .at(std::span(dense.positions()).subspan(owned.begin, owned.end - owned.begin), summation);

@@ -7,6 +7,11 @@
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
+#include <algorithm>
+#include <iterator>
+#include <span>
+#include <vector>
+
 namespace ddfem::coupling
 {
 inline Vec3 to_vec3(const dealii::Tensor<1, 3> &v)
@@ -26,6 +31,22 @@ inline dealii::Tensor<1, 3> to_tensor(const Vec3 &v)
 inline dealii::Point<3> to_point(const Vec3 &v)
 {
   return {v[0], v[1], v[2]};
+}
+
+inline std::vector<Vec3> to_vectors(const std::span<const dealii::Point<3>> points)
+{
+  std::vector<Vec3> result;
+  result.reserve(points.size());
+  std::transform(points.begin(), points.end(), std::back_inserter(result), to_vec3);
+  return result;
+}
+
+inline std::vector<dealii::Point<3>> to_points(const std::span<const Vec3> vectors)
+{
+  std::vector<dealii::Point<3>> result;
+  result.reserve(vectors.size());
+  std::transform(vectors.begin(), vectors.end(), std::back_inserter(result), to_point);
+  return result;
 }
 
 inline SymTensor to_sym_tensor(const dealii::SymmetricTensor<2, 3> &s)

@@ -40,10 +40,7 @@ std::optional<unsigned> DislocationTractions::n_summed(const std::size_t n_point
 std::vector<dealii::SymmetricTensor<2, 3>> DislocationTractions::sum(
     const std::span<const dealii::Point<3>> points) const
 {
-  std::vector<Vec3> mine;
-  mine.reserve(points.size());
-  std::transform(points.begin(), points.end(), std::back_inserter(mine), to_vec3);
-  const GatheredPoints all = gather_points(mine, communicator);
+  const GatheredPoints all = gather_points(to_vectors(points), communicator);
   MultipoleField field(line_system, all.points, {tolerance_of_tractions(summation)});
   const std::vector<SymTensor> stress = field.stress(communicator);
   std::vector<dealii::SymmetricTensor<2, 3>> result;
@@ -112,11 +109,10 @@ void DislocationTractions::add_stress(const std::span<const unsigned> sources,
   StressBuffer buffer(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     buffer.set_point(i, points[i]);
-  std::vector<unsigned> of_lines, of_rays;
-  std::vector<std::size_t> of_images;
+  std::vector<unsigned> of_lines, of_rays, of_images;
   for (const unsigned source : sources)
     if (is_image(source))
-      of_images.push_back(image_number(source));
+      of_images.push_back(static_cast<unsigned>(image_number(source)));
     else if (source < n_lines())
       of_lines.push_back(source);
     else
@@ -127,11 +123,7 @@ void DislocationTractions::add_stress(const std::span<const unsigned> sources,
   for (std::size_t i = 0; i < points.size(); ++i)
     sums.push_back(buffer.value(i));
   if (!of_images.empty())
-  {
-    std::vector<Vec3> positions;
-    std::transform(points.begin(), points.end(), std::back_inserter(positions), to_vec3);
-    images->add_stress(of_images, positions, sums);
-  }
+    images->add_stress(of_images, to_vectors(points), sums);
   for (std::size_t i = 0; i < points.size(); ++i)
     values[i] += to_symmetric_tensor(sums[i]);
 }

@@ -57,7 +57,7 @@ private:
   const SurfaceImages *images;
   SummationSettings summation;
   MPI_Comm communicator;
-  BallBlocks balls;                 ///< around the lines, if there are many
+  BallBlocks balls;                 ///< around the lines, unless sums are direct
   std::vector<VirtualRay> ray_list; ///< rays of the lines, then legs
   LineTable rays;                   ///< the same
 };

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -42,9 +41,8 @@ void FaceDisplacement::add_stress(const std::span<const unsigned> sources,
                                   const std::span<const dealii::Point<3>> points,
                                   const std::span<dealii::SymmetricTensor<2, 3>> values) const
 {
-  std::vector<Vec3> positions, u(points.size(), Vec3::Zero());
-  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_vec3);
-  add_displacement(sources, positions, u);
+  std::vector<Vec3> u(points.size(), Vec3::Zero());
+  add_displacement(sources, to_vectors(points), u);
   for (std::size_t i = 0; i < points.size(); ++i)
     values[i] += as_stress(u[i]);
 }
@@ -118,12 +116,9 @@ double SweptDisplacement::summation_error() const
 
 std::vector<dealii::SymmetricTensor<2, 3>> SweptDisplacement::sum(const std::span<const dealii::Point<3>> points) const
 {
-  std::vector<Vec3> positions;
-  positions.reserve(points.size());
-  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_vec3);
   std::vector<dealii::SymmetricTensor<2, 3>> result;
   result.reserve(points.size());
-  const GatheredPoints all = gather_points(positions, summation.communicator);
+  const GatheredPoints all = gather_points(to_vectors(points), summation.communicator);
   for (const Vec3 &u : multipole_displacement(nu, swept, all, points.size(), summation))
     result.push_back(as_stress(u));
   return result;
@@ -179,10 +174,7 @@ std::vector<dealii::SymmetricTensor<2, 3>> interpolated(const fem::TractionField
 {
   std::vector<unsigned> sources(field.n_sources());
   std::iota(sources.begin(), sources.end(), 0U);
-  std::vector<dealii::Point<3>> positions;
-  positions.reserve(points.size());
-  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_point);
-  return fem::interpolated_sum(field, sources, positions, tolerance_of_tractions(summation));
+  return fem::interpolated_sum(field, sources, to_points(points), tolerance_of_tractions(summation));
 }
 } // namespace
 
@@ -208,12 +200,8 @@ void ImageStress::smooth_lengths(const dealii::Point<3> &centre, const double ra
 void ImageStress::add_stress(const std::span<const unsigned> sources, const std::span<const dealii::Point<3>> points,
                              const std::span<dealii::SymmetricTensor<2, 3>> values) const
 {
-  const std::vector<std::size_t> numbers(sources.begin(), sources.end());
-  std::vector<Vec3> positions;
-  positions.reserve(points.size());
-  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_vec3);
   std::vector<SymTensor> stress(points.size(), SymTensor::Zero());
-  images.add_stress(numbers, positions, stress);
+  images.add_stress(sources, to_vectors(points), stress);
   for (std::size_t i = 0; i < points.size(); ++i)
     values[i] += to_symmetric_tensor(stress[i]);
 }

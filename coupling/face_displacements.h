@@ -33,7 +33,7 @@ struct SweptSummation
   SummationSettings settings{SummationMethod::direct};
   MPI_Comm communicator = MPI_COMM_SELF;
 
-  /// @p n_points: of this rank or of all.
+  /// @p n_points: of all ranks.
   bool use_multipoles(const SweptLoops &swept, std::size_t n_points) const
   {
     return settings.use_multipoles(swept.n_finite, n_points);
@@ -97,7 +97,7 @@ private:
   const SweptLoops &swept;
   double nu, resolution;
   SweptSummation summation;
-  BallBlocks balls; ///< around the finite triangles, if they are summed
+  BallBlocks balls; ///< around the finite triangles, unless sums are direct
   std::vector<std::vector<TriangleCorners>>
       extents; ///< finite triangles that cover each of them: one, or two for a strip
 };

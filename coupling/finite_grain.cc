@@ -305,12 +305,9 @@ BoundaryState FiniteGrain::boundary_state() const
 
 std::vector<SymTensor> FiniteGrain::stress_of_elements(const std::vector<Vec3> &points) const
 {
-  std::vector<dealii::Point<3>> positions;
-  positions.reserve(points.size());
-  std::transform(points.begin(), points.end(), std::back_inserter(positions), to_point);
   std::vector<SymTensor> result;
   result.reserve(points.size());
-  for (const auto &s : problem->stress_at(positions))
+  for (const auto &s : problem->stress_at(to_points(points)))
     result.push_back(to_sym_tensor(s));
   return result;
 }
@@ -324,10 +321,7 @@ std::vector<SymTensor> FiniteGrain::correction_stress(const std::vector<Vec3> &p
 
 std::vector<Vec3> FiniteGrain::boundary_nodes() const
 {
-  std::vector<Vec3> nodes;
-  for (const auto &p : problem->boundary_points())
-    nodes.push_back(to_vec3(p));
-  return nodes;
+  return to_vectors(problem->boundary_points());
 }
 
 std::vector<Vec3> FiniteGrain::boundary_displacement() const

@@ -49,13 +49,7 @@ SegmentField FiniteGrain::correction_at_segments(const Network &network) const
 {
   SegmentPoints::SmoothLength smooth_length;
   if (image_settings.depth > 0)
-    smooth_length = [&](const Vec3 &x)
-    {
-      double depth = image_settings.depth;
-      for (const ImagePlane &p : planes_of_images)
-        depth = std::min(depth, (p.point - x).dot(p.outward));
-      return std::max(depth, 0.0) + medium.a;
-    };
+    smooth_length = smooth_length_under(planes_of_images, image_settings.depth, medium.a);
   SegmentField field{SegmentPoints(network, smooth_length), {}, {}};
   field.without_images = stress_of_elements(field.points.positions());
   field.stress = field.without_images;

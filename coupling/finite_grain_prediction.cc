@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace ddfem::coupling
 {
@@ -37,9 +36,7 @@ double FiniteGrain::load_of_swept_area(const SweptArea &area) const
 {
   if (load_per_motion == 0)
     return 0;
-  std::vector<dealii::Point<3>> centres;
-  const std::vector<Vec3> positions = swept_centres(area, grain_shape.get());
-  std::transform(positions.begin(), positions.end(), std::back_inserter(centres), to_point);
+  const std::vector<dealii::Point<3>> centres = to_points(swept_centres(area, grain_shape.get()));
   std::vector<SymTensor> stress;
   for (const auto &s : problem->stress_at(centres, unit_stress))
     stress.push_back(to_sym_tensor(s));

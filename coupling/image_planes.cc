@@ -84,4 +84,16 @@ double facet_size(const std::vector<Facet> &facets, const std::vector<ImagePlane
         size = std::max(size, (f.vertices[(k + 1) % f.vertices.size()] - f.vertices[k]).norm());
   return size;
 }
+
+SegmentPoints::SmoothLength smooth_length_under(const std::vector<ImagePlane> &planes, const double depth,
+                                                const double a)
+{
+  return [&planes, depth, a](const Vec3 &x)
+  {
+    double least = depth;
+    for (const ImagePlane &p : planes)
+      least = std::min(least, (p.point - x).dot(p.outward));
+    return std::max(least, 0.0) + a;
+  };
+}
 } // namespace ddfem::coupling

@@ -280,8 +280,9 @@ void add_numerics(std::vector<ParameterEntry> &t)
                "Error of the nodal forces between two segments relative to their largest component."});
   t.push_back(
       {"Forces", "Summation", "automatic", one_of("direct|multipole|automatic"), "",
-       "Sums over lines, for forces, field points, tractions and displacements of the surface: every pair in closed "
-       "form (direct), a fast multipole method, or the latter if there are as many pairs as 2000 segments have."});
+       "Sums over lines: every pair in closed form (direct), a fast multipole method, or the latter for forces and "
+       "field "
+       "points from 2000 segments on, and on the surface from as many pairs of sources and points as those have."});
   t.push_back(
       {"Forces", "Far-field tolerance", "1e-3", between(1e-8, 1e-1), "",
        "Error of the fast multipole method relative to the rms of the far field, about a fifth of the total; a tenth "

@@ -160,20 +160,6 @@ LocalDisplacement::LocalDisplacement(const double nu, const int order, const Vec
 
 void LocalDisplacement::add(const DisplacementBatch &batch) const
 {
-  const std::size_t n = n_harmonics(degree);
-  alignas(row_size) Row harmonics[n_harmonics(max_order)];
-  for (std::size_t begin = 0; begin < batch.n; begin += row_width)
-  {
-    const std::size_t count = std::min(row_width, batch.n - begin);
-    Row y[3] = {}, u[6];
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < count; ++i)
-        y[c][i] = (batch.x[c][begin + i] - centre[static_cast<int>(c)]) / size;
-    regular_harmonics(degree, y, harmonics);
-    contract_harmonics(n, harmonics, coefficients.rows(), y, u);
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < count; ++i)
-        batch.value[c][begin + i] += u[c][i];
-  }
+  add_local_expansion(degree, centre, size, coefficients, batch);
 }
 } // namespace ddfem::fmm

@@ -1,8 +1,10 @@
 // The loops that the expansions of stress and displacement share. Internal to dd/fmm.
 #pragma once
 
+#include "dd/elasticity/point_batch.h"
 #include "dd/fmm/solid_harmonics.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -28,4 +30,27 @@ const std::array<std::vector<GradientTerm>, 3> &known_gradient_terms(int order);
 /// Eight points at once. @p coefficients: 24 numbers per harmonic, four groups c of six; @p y: (x - centre)/size; the result, six rows:
 /// c_0 + y_0 c_1 + y_1 c_2 + y_2 c_3.
 void contract_harmonics(std::size_t n, const Row *harmonics, const Row *coefficients, const Row *y, Row *result);
+
+/// Adds that at the points of a batch, from expansions up to @p degree about @p centre (nm) in a box of @p size (nm).
+template <std::size_t n_values>
+void add_local_expansion(const int degree, const Vec3 &centre, const double size, const RowBuffer &coefficients,
+                         const PointBatch<n_values> &batch)
+{
+  static_assert(n_values <= 6);
+  const std::size_t n = n_harmonics(degree);
+  alignas(row_size) Row harmonics[n_harmonics(max_order)];
+  for (std::size_t begin = 0; begin < batch.n; begin += row_width)
+  {
+    const std::size_t count = std::min(row_width, batch.n - begin);
+    Row y[3] = {}, result[6];
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < count; ++i)
+        y[c][i] = (batch.x[c][begin + i] - centre[static_cast<int>(c)]) / size;
+    regular_harmonics(degree, y, harmonics);
+    contract_harmonics(n, harmonics, coefficients.rows(), y, result);
+    for (std::size_t c = 0; c < n_values; ++c)
+      for (std::size_t i = 0; i < count; ++i)
+        batch.value[c][begin + i] += result[c][i];
+  }
+}
 } // namespace ddfem::fmm

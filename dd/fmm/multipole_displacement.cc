@@ -21,7 +21,15 @@ std::vector<SourceExtent> extents_of(const std::span<const TriangularLoop> loops
 MultipoleDisplacement::MultipoleDisplacement(const double nu_, const MultipoleSettings &given,
                                              const std::span<const TriangularLoop> loops,
                                              const std::span<const Vec3> points)
-    : MultipoleSum(given, enclosing_grid(extents_of(loops), {}, points), extents_of(loops), points, 0.0, 3), nu(nu_)
+    : MultipoleDisplacement(nu_, given, loops, extents_of(loops), points)
+{
+}
+
+MultipoleDisplacement::MultipoleDisplacement(const double nu_, const MultipoleSettings &given,
+                                             const std::span<const TriangularLoop> loops,
+                                             const std::span<const SourceExtent> extents,
+                                             const std::span<const Vec3> points)
+    : MultipoleSum(given, enclosing_grid(extents, {}, points), extents, points, 0.0, 3), nu(nu_)
 {
   sources.reserve(loops.size());
   for (const std::uint32_t i : octree().line_order())

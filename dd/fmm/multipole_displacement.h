@@ -21,6 +21,8 @@ public:
   std::vector<Vec3> displacement(MPI_Comm comm, Part part = Part::all);
 
 private:
+  MultipoleDisplacement(double nu, const MultipoleSettings &settings, std::span<const TriangularLoop> loops,
+                        std::span<const SourceExtent> extents, std::span<const Vec3> points);
   void add_own_moments(const Box &box, const ExpansionView &moments) const override;
   void add_far(const Box &leaf, const Row *fields, const double *q) override;
   void add_near(std::size_t leaf) override;

@@ -196,7 +196,7 @@ SymTensor SurfaceImages::stress(const Vec3 &x) const
       pieces.size(), [](const std::size_t i) { return i; }, x);
 }
 
-SymTensor SurfaceImages::stress(const std::span<const std::size_t> images, const Vec3 &x) const
+SymTensor SurfaceImages::stress(const std::span<const unsigned> images, const Vec3 &x) const
 {
   return sum_of_pieces(
       images.size(), [&](const std::size_t i) { return images[i]; }, x);
@@ -240,7 +240,7 @@ void SurfaceImages::add_stress_of(const std::size_t n, PieceNumber &&number, con
                  });
 }
 
-void SurfaceImages::add_stress(const std::span<const std::size_t> images, const std::span<const Vec3> points,
+void SurfaceImages::add_stress(const std::span<const unsigned> images, const std::span<const Vec3> points,
                                const std::span<SymTensor> values) const
 {
   add_stress_of(

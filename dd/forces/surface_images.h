@@ -59,9 +59,9 @@ public:
   std::size_t n_images() const { return pieces.size(); }
   int face_of_image(std::size_t image) const { return planes[pieces[image].plane].face_id; }
   /// Stress of some of the images, in ascending order, MPa.
-  SymTensor stress(std::span<const std::size_t> images, const Vec3 &x) const;
+  SymTensor stress(std::span<const unsigned> images, const Vec3 &x) const;
   /// Adds the same at many points to @p values, in one thread.
-  void add_stress(std::span<const std::size_t> images, std::span<const Vec3> points, std::span<SymTensor> values) const;
+  void add_stress(std::span<const unsigned> images, std::span<const Vec3> points, std::span<SymTensor> values) const;
   /// Adds the displacement of some of the images, in ascending order, at points, nm, in one thread.
   void add_displacement(std::span<const unsigned> images, std::span<const Vec3> points, std::span<Vec3> values) const;
   /// Lower bound of the distance of a point of the grain from the singularities of one image, nm.

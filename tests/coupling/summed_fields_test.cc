@@ -95,13 +95,7 @@ protected:
     n_evaluations = summary.n_evaluations;
     return problem->boundary_loads();
   }
-  std::vector<Vec3> boundary_nodes() const
-  {
-    std::vector<Vec3> nodes;
-    for (const auto &p : problem->boundary_points())
-      nodes.push_back(to_vec3(p));
-    return nodes;
-  }
+  std::vector<Vec3> boundary_nodes() const { return to_vectors(problem->boundary_points()); }
 
   BoxShape shape{Vec3::Zero(), Vec3::Constant(edge)};
   Network network = random_network(0);

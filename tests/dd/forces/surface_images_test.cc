@@ -87,9 +87,9 @@ TEST_P(SurfaceImagesOfANetwork, LeaveOnTheirFaceWhatTheySayTheyLeave)
     for (const auto &leg : images.remaining_legs())
       if (leg.face_id == 5)
         expected += ray_stress(medium, x, leg.ray.origin, leg.ray.direction, leg.ray.burgers);
-    for (std::size_t i = 0; i < images.n_images(); ++i)
+    for (unsigned i = 0; i < images.n_images(); ++i)
       if (images.face_of_image(i) != 5)
-        expected += images.stress(std::vector<std::size_t>{i}, x);
+        expected += images.stress(std::vector<unsigned>{i}, x);
     const Vec3 difference = contract(SymTensor(total - expected), Vec3::UnitZ());
     EXPECT_LT(difference.norm(), 1e-5 * contract(lines.stress(x), Vec3::UnitZ()).norm()) << x.transpose();
   }
@@ -138,16 +138,16 @@ TEST_P(SurfaceImagesOfANetwork, AtManyPointsAreThoseAtEach)
 {
   const auto points = points_on_top();
   const auto many = images.stress(points);
-  std::vector<std::size_t> all(images.n_images());
-  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<unsigned> all(images.n_images());
+  std::iota(all.begin(), all.end(), 0U);
   std::vector<SymTensor> chosen(points.size(), SymTensor::Zero());
   images.add_stress(all, points, chosen);
   EXPECT_EQ(chosen, many);
   for (std::size_t k = 0; k < points.size(); ++k)
   {
     double magnitude = 0;
-    for (std::size_t i = 0; i < images.n_images(); ++i)
-      magnitude += images.stress(std::vector<std::size_t>{i}, points[k]).norm();
+    for (unsigned i = 0; i < images.n_images(); ++i)
+      magnitude += images.stress(std::vector<unsigned>{i}, points[k]).norm();
     EXPECT_LT((many[k] - images.stress(points[k])).norm(), 1e-12 * magnitude);
   }
 }
