@@ -24,13 +24,20 @@ struct TriangularLoop
   std::array<LoopVertex, 3> vertices;
   std::array<Edge, 3> edges;
   Vec3 normal; ///< product of the edges (or directions at infinity) that leave the first vertex
+  /// `normal` times a tiny distance (nm), with a sign that all triangles of a plane and sense share. A point closer to the plane than this is taken
+  /// to be at this distance on the side of the sign: on the nodes of a mesh that lie in a glide plane, rounding would decide for each triangle anew,
+  /// and area swept forth and back would not cancel.
+  double side;
   Vec3 burgers;
 
   /// At least one vertex must be finite.
   TriangularLoop(const LoopVertex &v1, const LoopVertex &v2, const LoopVertex &v3, const Vec3 &b);
 
-  /// Of a loop without vertices at infinity: their mean, and the largest distance of one of them from it, nm.
-  Vec3 middle() const { return (vertices[0].value + vertices[1].value + vertices[2].value) / 3; }
-  double radius() const;
+  /// Of a loop without vertices at infinity: centre and radius (nm) of a ball around it, for thin triangles the smallest one.
+  Vec3 middle() const;
+  double radius() const { return radius_about(middle()); }
+
+private:
+  double radius_about(const Vec3 &x) const;
 };
 } // namespace ddfem
