@@ -219,13 +219,11 @@ private:
     problem->project_on_conditions(field);
   }
 
-  /// At the points that FiniteGrain::correction_at_segments takes, divided among the ranks as there.
+  /// At the points that FiniteGrain::correction_at_segments takes.
   void stress_of_images(const Network &network) const
   {
     const SegmentPoints dense(network, coupling::smooth_length_under(planes, image_settings.depth, medium.a));
-    const IndexRange owned = owned_range(dense.positions().size(), MPI_COMM_WORLD);
-    coupling::ImageStress(images, medium.a)
-        .at(std::span(dense.positions()).subspan(owned.begin, owned.end - owned.begin), summation);
+    coupling::stress_of_images(images, dense.positions(), summation, MPI_COMM_WORLD);
   }
 
   /// What FiniteGrain::add_swept does: two triangles per segment, of the motion in a step.

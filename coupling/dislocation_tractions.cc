@@ -3,6 +3,7 @@
 #include "coupling/convert.h"
 #include "dd/common/parallel.h"
 #include "dd/elasticity/distance.h"
+#include "dd/fmm/grids_and_rays.h"
 
 #include <algorithm>
 #include <array>
@@ -11,6 +12,19 @@
 
 namespace ddfem::coupling
 {
+std::vector<SymTensor> stress_of_images(const SurfaceImages &images, const std::span<const Vec3> points,
+                                        const SummationSettings &summation, MPI_Comm comm)
+{
+  if (use_multipoles_for_images(summation, images.n_images(), points.size()))
+    return images.multipole_stress(points, {summation.tolerance}, comm);
+  std::vector<SymTensor> stress(points.size());
+  const IndexRange owned = owned_range(points.size(), comm);
+  const auto mine = images.stress(points.subspan(owned.begin, owned.end - owned.begin));
+  std::copy(mine.begin(), mine.end(), stress.begin() + static_cast<std::ptrdiff_t>(owned.begin));
+  gather_owned(stress, comm);
+  return stress;
+}
+
 DislocationTractions::DislocationTractions(const LineSystem &system, const SurfaceImages *surface_images,
                                            const SummationSettings &settings, MPI_Comm comm)
     : line_system(system), images(surface_images), summation(settings), communicator(comm), ray_list(system.rays()),
@@ -28,6 +42,8 @@ DislocationTractions::DislocationTractions(const LineSystem &system, const Surfa
   for (const StraightLine &l : system.lines())
     around.push_back({0.5 * (l.start + l.end), 0.5 * (l.end - l.start).norm()});
   balls = BallBlocks(around);
+  if (images)
+    image_balls = BallBlocks(images->bounding_balls());
 }
 
 std::optional<unsigned> DislocationTractions::n_summed(const std::size_t n_points) const
@@ -50,14 +66,77 @@ std::vector<dealii::SymmetricTensor<2, 3>> DislocationTractions::sum(
   return result;
 }
 
+std::vector<std::vector<dealii::SymmetricTensor<2, 3>>> DislocationTractions::complete_sum(
+    const std::span<const fem::BoundaryPoints> boundaries) const
+{
+  const fmm::MultipoleSettings settings{tolerance_of_tractions(summation)};
+  std::vector<std::vector<dealii::SymmetricTensor<2, 3>>> result;
+  std::vector<Vec3> points;
+  std::vector<int> faces;
+  for (const fem::BoundaryPoints &b : boundaries)
+  {
+    auto &values = result.emplace_back(b.points.size());
+    const std::vector<Vec3> x = to_vectors(b.points);
+    points.insert(points.end(), x.begin(), x.end());
+    faces.insert(faces.end(), x.size(), static_cast<int>(b.boundary));
+    // All others but legs are images, and those under the plane of the boundary vanish there.
+    const auto n_legs =
+        std::find_if(b.others.begin(), b.others.end(), [this](unsigned s) { return is_image(s); }) - b.others.begin();
+    add_in_parallel(std::span(b.others).first(static_cast<std::size_t>(n_legs)), 1., b.points, values);
+    subtract(b.vanishing, b.points, settings, values);
+  }
+  if (!images || images->empty())
+    return result;
+  const std::vector<SymTensor> of_images = images->multipole_stress(points, settings, MPI_COMM_SELF, faces);
+  auto next = of_images.begin();
+  for (auto &values : result)
+    for (auto &value : values)
+      value += to_symmetric_tensor(*next++);
+  return result;
+}
+
+void DislocationTractions::subtract(const std::span<const unsigned> sources,
+                                    const std::span<const dealii::Point<3>> points,
+                                    const fmm::MultipoleSettings &settings,
+                                    const std::span<dealii::SymmetricTensor<2, 3>> values) const
+{
+  const auto line_end =
+      static_cast<std::size_t>(std::lower_bound(sources.begin(), sources.end(), n_lines()) - sources.begin());
+  if (!summation.use_multipoles(line_end, points.size()))
+    return add_in_parallel(sources, -1., points, values);
+  add_in_parallel(sources.subspan(line_end), -1., points, values);
+  const std::vector<SymTensor> of_lines = stress_of_lines(sources.first(line_end), to_vectors(points), settings);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    values[i] -= to_symmetric_tensor(of_lines[i]);
+}
+
+std::vector<SymTensor> DislocationTractions::stress_of_lines(const std::span<const unsigned> numbers,
+                                                             const std::span<const Vec3> points,
+                                                             const fmm::MultipoleSettings &settings) const
+{
+  std::vector<fmm::LineSource> lines;
+  lines.reserve(numbers.size());
+  for (const unsigned i : numbers)
+  {
+    const StraightLine &l = line_system.lines()[i];
+    lines.push_back({l.start, l.end, l.burgers});
+  }
+  const fmm::RootGrid grid = fmm::enclosing_grid(fmm::extents_of(lines), {}, points);
+  return fmm::MultipoleStress(line_system.medium(), settings, grid, lines, {}, points).stress(MPI_COMM_SELF);
+}
+
 void DislocationTractions::append_near(const dealii::Point<3> &centre, const double radius, const double length,
                                        std::vector<unsigned> &sources) const
 {
   const Vec3 x = to_vec3(centre);
-  std::vector<unsigned> candidates;
+  std::vector<unsigned> candidates, of_images;
   balls.append_touching(x, radius + length, candidates);
-  for (auto ray = static_cast<unsigned>(n_lines()); ray < n_lines() + line_system.rays().size(); ++ray)
+  const auto n_before_images = static_cast<unsigned>(n_lines() + rays.size());
+  for (auto ray = static_cast<unsigned>(n_lines()); ray < n_before_images; ++ray)
     candidates.push_back(ray);
+  image_balls.append_touching(x, radius + length, of_images);
+  for (const unsigned image : of_images)
+    candidates.push_back(n_before_images + image);
   std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(sources),
                [&](const unsigned source) { return distance(source, x) < radius + length; });
 }

@@ -21,11 +21,21 @@ constexpr double tolerance_of_tractions(const SummationSettings &s)
   return 0.1 * s.tolerance;
 }
 
+/// Whether the fields of many images are summed by fast multipoles. The closed form of an image costs as much as that of some eight segments.
+inline bool use_multipoles_for_images(const SummationSettings &s, std::size_t n_images, std::size_t n_points)
+{
+  return s.use_multipoles(8 * n_images, n_points);
+}
+
+/// Stress of the images at points, MPa. Collective: every rank has all points and gets all values.
+std::vector<SymTensor> stress_of_images(const SurfaceImages &images, std::span<const Vec3> points,
+                                        const SummationSettings &summation, MPI_Comm comm);
+
 /// Presents a LineSystem and the images of its lines to the FEM. Sources are the lines, the rays, the legs that the images leave
 /// on their faces, the images. On the face of an image the image and the lines and rays that it frees of tractions are left out:
 /// their sum is zero there. The stress of the non-singular theory is analytic up to the distance sqrt(d^2 + a^2) in the complex
-/// plane, d being the distance to the line (or mirror image): that is its smooth length. Many lines and their rays are summed by
-/// fast multipoles.
+/// plane, d being the distance to the line (or mirror image): that is its smooth length. Many lines, their rays and their images
+/// are summed by fast multipoles.
 class DislocationTractions final : public fem::TractionField
 {
 public:
@@ -43,12 +53,20 @@ public:
   std::optional<unsigned> n_summed(std::size_t n_points) const override;
   double summation_error() const override { return tolerance_of_tractions(summation); }
   std::vector<dealii::SymmetricTensor<2, 3>> sum(std::span<const dealii::Point<3>> points) const override;
+  std::vector<std::vector<dealii::SymmetricTensor<2, 3>>> complete_sum(
+      std::span<const fem::BoundaryPoints> boundaries) const override;
   void append_near(const dealii::Point<3> &centre, double radius, double length,
                    std::vector<unsigned> &sources) const override;
 
 private:
   std::size_t n_lines() const { return line_system.lines().size(); }
   double distance(unsigned source, const Vec3 &x) const;
+  /// Takes the stress of some lines and rays from `values`.
+  void subtract(std::span<const unsigned> sources, std::span<const dealii::Point<3>> points,
+                const fmm::MultipoleSettings &settings, std::span<dealii::SymmetricTensor<2, 3>> values) const;
+  /// Of some lines by fast multipoles, at points of this rank, MPa.
+  std::vector<SymTensor> stress_of_lines(std::span<const unsigned> numbers, std::span<const Vec3> points,
+                                         const fmm::MultipoleSettings &settings) const;
   /// Number of the image that a source is; beyond n_images() for others.
   std::size_t image_number(unsigned source) const { return source - n_lines() - rays.size(); }
   bool is_image(unsigned source) const { return source >= n_lines() + rays.size(); }
@@ -57,7 +75,7 @@ private:
   const SurfaceImages *images;
   SummationSettings summation;
   MPI_Comm communicator;
-  BallBlocks balls;                 ///< around the lines, unless sums are direct
+  BallBlocks balls, image_balls;    ///< around the lines and images, unless sums are direct
   std::vector<VirtualRay> ray_list; ///< rays of the lines, then legs
   LineTable rays;                   ///< the same
 };

@@ -4,10 +4,10 @@
 #include "dd/common/parallel.h"
 #include "dd/elasticity/vectorised/displacement_kernels.h"
 #include "dd/fmm/multipole_displacement.h"
-#include "fem/interpolated_sum.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -128,6 +128,13 @@ void SweptDisplacement::append_near(const dealii::Point<3> &centre, const double
                                     std::vector<unsigned> &sources) const
 {
   balls.append_touching(to_vec3(centre), radius + length, sources);
+  for (auto open = static_cast<unsigned>(swept.n_finite); open < n_sources(); ++open)
+  {
+    double smooth = 0;
+    smooth_lengths(centre, radius, {&open, 1}, {&smooth, 1});
+    if (smooth < length)
+      sources.push_back(open);
+  }
 }
 
 void SweptDisplacement::smooth_lengths(const dealii::Point<3> &centre, const double radius,
@@ -158,6 +165,14 @@ void SweptDisplacement::add_displacement(const std::span<const unsigned> sources
     u[i] += buffer.value(i);
 }
 
+ImageDisplacement::ImageDisplacement(const SurfaceImages &surface_images, const int normal_axis, const double smallest,
+                                     const SummationSettings &how)
+    : FaceDisplacement(normal_axis), images(surface_images), resolution(smallest), summation(how)
+{
+  if (summation.method != SummationMethod::direct)
+    balls = BallBlocks(images.bounding_balls());
+}
+
 void ImageDisplacement::smooth_lengths(const dealii::Point<3> &centre, const double radius,
                                        const std::span<const unsigned> sources, const std::span<double> lengths) const
 {
@@ -166,54 +181,41 @@ void ImageDisplacement::smooth_lengths(const dealii::Point<3> &centre, const dou
     lengths[i] = std::max(images.image_distance(sources[i], x) - radius, resolution);
 }
 
-namespace
-{
-std::vector<dealii::SymmetricTensor<2, 3>> interpolated(const fem::TractionField &field,
-                                                        const std::span<const Vec3> points,
-                                                        const SummationSettings &summation)
-{
-  std::vector<unsigned> sources(field.n_sources());
-  std::iota(sources.begin(), sources.end(), 0U);
-  return fem::interpolated_sum(field, sources, to_points(points), tolerance_of_tractions(summation));
-}
-} // namespace
-
-std::vector<Vec3> ImageDisplacement::at(const std::vector<Vec3> &points) const
-{
-  if (!summation.use_multipoles(n_sources(), points.size()))
-    return images.displacement(points);
-  std::vector<Vec3> u;
-  u.reserve(points.size());
-  for (const auto &s : interpolated(*this, points, summation))
-    u.push_back(from_stress(s));
-  return u;
-}
-
-void ImageStress::smooth_lengths(const dealii::Point<3> &centre, const double radius,
-                                 const std::span<const unsigned> sources, const std::span<double> lengths) const
+void ImageDisplacement::append_near(const dealii::Point<3> &centre, const double radius, const double length,
+                                    std::vector<unsigned> &sources) const
 {
   const Vec3 x = to_vec3(centre);
-  for (std::size_t i = 0; i < sources.size(); ++i)
-    lengths[i] = std::hypot(std::max(0.0, images.image_distance(sources[i], x) - radius), a);
+  std::vector<unsigned> candidates;
+  balls.append_touching(x, radius + length, candidates);
+  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(sources),
+               [&](const unsigned image) { return images.image_distance(image, x) < radius + length; });
 }
 
-void ImageStress::add_stress(const std::span<const unsigned> sources, const std::span<const dealii::Point<3>> points,
-                             const std::span<dealii::SymmetricTensor<2, 3>> values) const
+std::vector<std::vector<dealii::SymmetricTensor<2, 3>>> ImageDisplacement::complete_sum(
+    const std::span<const fem::BoundaryPoints> boundaries) const
 {
-  std::vector<SymTensor> stress(points.size(), SymTensor::Zero());
-  images.add_stress(sources, to_vectors(points), stress);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    values[i] += to_symmetric_tensor(stress[i]);
+  // All images, on the boundaries where they are wanted at all.
+  std::vector<Vec3> points;
+  for (const fem::BoundaryPoints &b : boundaries)
+    if (!b.others.empty())
+      for (const auto &x : b.points)
+        points.push_back(to_vec3(x));
+  const std::vector<Vec3> u = at(points);
+  std::vector<std::vector<dealii::SymmetricTensor<2, 3>>> result;
+  auto next = u.begin();
+  for (const fem::BoundaryPoints &b : boundaries)
+  {
+    auto &values = result.emplace_back(b.points.size());
+    for (std::size_t i = 0; i < values.size() && !b.others.empty(); ++i)
+      values[i] = as_stress(*next++);
+  }
+  return result;
 }
 
-std::vector<SymTensor> ImageStress::at(const std::span<const Vec3> points, const SummationSettings &summation) const
+std::vector<Vec3> ImageDisplacement::at(const std::span<const Vec3> points) const
 {
-  if (!summation.use_multipoles(n_sources(), points.size()))
-    return images.stress(points);
-  std::vector<SymTensor> stress;
-  stress.reserve(points.size());
-  for (const auto &s : interpolated(*this, points, summation))
-    stress.push_back(to_sym_tensor(s));
-  return stress;
+  if (!use_multipoles_for_images(summation, n_sources(), points.size()))
+    return images.displacement(points);
+  return images.multipole_displacement(points, {tolerance_of_tractions(summation)}, MPI_COMM_SELF);
 }
 } // namespace ddfem::coupling

@@ -102,26 +102,28 @@ private:
       extents; ///< finite triangles that cover each of them: one, or two for a strip
 };
 
-/// Displacement of the images of lines, each of them a source, not resolved below a given length either. Many are interpolated.
+/// Displacement of the images of lines, each of them a source, not resolved below a given length either. Many are summed by fast
+/// multipoles.
 class ImageDisplacement final : public FaceDisplacement
 {
 public:
   /// @p images must outlive the object; @p smallest: this length, nm.
-  ImageDisplacement(const SurfaceImages &surface_images, const int normal_axis, const double smallest,
-                    const SummationSettings &how = {SummationMethod::direct})
-      : FaceDisplacement(normal_axis), images(surface_images), resolution(smallest), summation(how)
-  {
-  }
+  ImageDisplacement(const SurfaceImages &surface_images, int normal_axis, double smallest,
+                    const SummationSettings &how = {SummationMethod::direct});
   unsigned n_sources() const override { return static_cast<unsigned>(images.n_images()); }
   void smooth_lengths(const dealii::Point<3> &centre, double radius, std::span<const unsigned> sources,
                       std::span<double> lengths) const override;
   std::optional<unsigned> n_summed(std::size_t n_points) const override
   {
-    return summation.use_multipoles(n_sources(), n_points) ? std::optional(0U) : std::nullopt;
+    return use_multipoles_for_images(summation, n_sources(), n_points) ? std::optional(0U) : std::nullopt;
   }
   double summation_error() const override { return tolerance_of_tractions(summation); }
-  /// Of all images at points, nm.
-  std::vector<Vec3> at(const std::vector<Vec3> &points) const;
+  std::vector<std::vector<dealii::SymmetricTensor<2, 3>>> complete_sum(
+      std::span<const fem::BoundaryPoints> boundaries) const override;
+  void append_near(const dealii::Point<3> &centre, double radius, double length,
+                   std::vector<unsigned> &sources) const override;
+  /// Of all images at points of this rank, nm.
+  std::vector<Vec3> at(std::span<const Vec3> points) const;
 
 protected:
   void add_displacement(std::span<const unsigned> sources, std::span<const Vec3> points,
@@ -134,25 +136,6 @@ private:
   const SurfaceImages &images;
   double resolution;
   SummationSettings summation;
-};
-
-/// Stress of the images of lines, each of them a source.
-class ImageStress final : public fem::TractionField
-{
-public:
-  /// @p images must outlive the object; @p core_radius: of the lines, nm.
-  ImageStress(const SurfaceImages &surface_images, const double core_radius) : images(surface_images), a(core_radius) {}
-
-  unsigned n_sources() const override { return static_cast<unsigned>(images.n_images()); }
-  void smooth_lengths(const dealii::Point<3> &centre, double radius, std::span<const unsigned> sources,
-                      std::span<double> lengths) const override;
-  void add_stress(std::span<const unsigned> sources, std::span<const dealii::Point<3>> points,
-                  std::span<dealii::SymmetricTensor<2, 3>> values) const override;
-  /// Of all images at points, MPa; many are interpolated.
-  std::vector<SymTensor> at(std::span<const Vec3> points, const SummationSettings &summation) const;
-
-private:
-  const SurfaceImages &images;
-  double a;
+  BallBlocks balls; ///< around the images, unless sums are direct
 };
 } // namespace ddfem::coupling

@@ -2,7 +2,6 @@
 #include "coupling/convert.h"
 #include "coupling/finite_grain.h"
 #include "coupling/image_planes.h"
-#include "dd/common/parallel.h"
 
 #include <algorithm>
 #include <set>
@@ -35,12 +34,7 @@ void FiniteGrain::add_images(const std::vector<Vec3> &points, std::vector<SymTen
 {
   if (images.empty())
     return;
-  std::vector<SymTensor> of_images(points.size());
-  const IndexRange owned = owned_range(points.size(), communicator);
-  const auto mine = ImageStress(images, medium.a)
-                        .at(std::span(points).subspan(owned.begin, owned.end - owned.begin), parameters.summation);
-  std::copy(mine.begin(), mine.end(), of_images.begin() + static_cast<std::ptrdiff_t>(owned.begin));
-  gather_owned(of_images, communicator);
+  const std::vector<SymTensor> of_images = stress_of_images(images, points, parameters.summation, communicator);
   for (std::size_t k = 0; k < points.size(); ++k)
     stress[k] += of_images[k];
 }

@@ -90,15 +90,13 @@ private:
     double near_ratio = 0.;               // 2s/h below which a source needs another rule
     std::vector<std::size_t> first_point; // of each face; no_points: zero there
     std::vector<dealii::SymmetricTensor<2, 3>> stress;
-    std::map<dealii::types::boundary_id, std::vector<unsigned>> vanishing; // among the sources that the field sums
-    std::map<dealii::types::boundary_id, std::vector<unsigned>> others;    // not summed by the field, and not vanishing
   };
 
   Sum sum(const TractionField &field) const;
   /// Points of the common rule.
   std::vector<dealii::Point<3>> common_points(const Sum &sum) const;
-  void add_others(const TractionField &field, double error, const std::vector<dealii::Point<3>> &points,
-                  Sum &sum) const;
+  /// The boundaries of this rank, each with its sources and the points of faces that are not empty, which sum.first_point gets.
+  std::vector<BoundaryPoints> sort_sources(const TractionField &field, unsigned n_summed, Sum &sum) const;
   /// Adds a face's part of the sum without the sources that need another rule, which are appended to `rest`.
   void integrate_sum(const TractionField &field, unsigned face, const Sum &sum, std::vector<unsigned> &rest,
                      FaceIntegral &result, Workspace &work) const;

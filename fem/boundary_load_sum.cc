@@ -1,6 +1,5 @@
 // The part of BoundaryLoad that takes the sources together at common points.
 #include "fem/boundary_load.h"
-#include "fem/interpolated_sum.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -29,6 +28,38 @@ std::vector<dealii::Point<3>> BoundaryLoad::common_points(const Sum &sum) const
   return points;
 }
 
+std::vector<BoundaryPoints> BoundaryLoad::sort_sources(const TractionField &field, unsigned n_summed, Sum &sum) const
+{
+  std::map<dealii::types::boundary_id, BoundaryPoints> boundaries;
+  std::size_t next = 0;
+  for (const auto &face : grid.faces)
+  {
+    const auto [entry, is_new] = boundaries.try_emplace(face.boundary, BoundaryPoints{face.boundary, {}, {}, {}});
+    BoundaryPoints &b = entry->second;
+    for (unsigned source = 0; is_new && source < field.n_sources(); ++source)
+    {
+      const bool is_zero = field.vanishes_on(source, face.boundary);
+      if (source < n_summed && is_zero)
+      {
+        b.vanishing.push_back(source);
+      }
+      if (source >= n_summed && !is_zero)
+      {
+        b.others.push_back(source);
+      }
+    }
+    const bool is_empty = b.vanishing.size() == n_summed && b.others.empty();
+    sum.first_point.push_back(is_empty ? no_points : next);
+    next += is_empty ? 0 : static_cast<std::size_t>(sum.order) * sum.order;
+  }
+  std::vector<BoundaryPoints> result;
+  for (auto &[boundary, b] : boundaries)
+  {
+    result.push_back(std::move(b));
+  }
+  return result;
+}
+
 BoundaryLoad::Sum BoundaryLoad::sum(const TractionField &field) const
 {
   // The more points, the fewer sources are too near; beyond some two edges of a face that gains little.
@@ -48,65 +79,39 @@ BoundaryLoad::Sum BoundaryLoad::sum(const TractionField &field) const
   }
   result.order = order;
   result.near_ratio = ratio_for(error, order);
-  std::size_t next = 0;
-  for (const auto &face : grid.faces)
-  {
-    const auto boundary = face.boundary;
-    if (result.vanishing.count(boundary) == 0)
-    {
-      auto &vanishing = result.vanishing[boundary], &others = result.others[boundary];
-      for (unsigned source = 0; source < field.n_sources(); ++source)
-      {
-        const bool is_zero = field.vanishes_on(source, boundary);
-        if (source < *n_summed && is_zero)
-        {
-          vanishing.push_back(source);
-        }
-        if (source >= *n_summed && !is_zero)
-        {
-          others.push_back(source);
-        }
-      }
-    }
-    const bool is_empty = result.vanishing[boundary].size() == *n_summed && result.others[boundary].empty();
-    result.first_point.push_back(is_empty ? no_points : next);
-    next += is_empty ? 0 : static_cast<std::size_t>(order) * order;
-  }
+  std::vector<BoundaryPoints> boundaries = sort_sources(field, *n_summed, result);
   const std::vector<dealii::Point<3>> points = common_points(result);
   if (*n_summed > 0)
   {
     result.stress = field.sum(points);
   }
   result.stress.resize(points.size());
-  add_others(field, error, points, result);
-  return result;
-}
 
-/// Adds the sources that the field does not sum, boundary by boundary.
-void BoundaryLoad::add_others(const TractionField &field, double error, const std::vector<dealii::Point<3>> &points,
-                              Sum &sum) const
-{
-  for (const auto &[boundary, sources] : sum.others)
+  std::map<dealii::types::boundary_id, std::vector<std::size_t>> numbers;
+  for (unsigned face = 0; face < grid.faces.size(); ++face)
   {
-    std::vector<std::size_t> numbers;
-    std::vector<dealii::Point<3>> some;
-    for (unsigned face = 0; face < grid.faces.size() && !sources.empty(); ++face)
+    for (std::size_t k = 0; k < static_cast<std::size_t>(order) * order && result.first_point[face] != no_points; ++k)
     {
-      if (grid.faces[face].boundary == boundary)
-      {
-        for (std::size_t k = 0; k < static_cast<std::size_t>(sum.order) * sum.order; ++k)
-        {
-          numbers.push_back(sum.first_point[face] + k);
-          some.push_back(points[numbers.back()]);
-        }
-      }
-    }
-    const auto stress = interpolated_sum(field, sources, some, error);
-    for (std::size_t k = 0; k < numbers.size(); ++k)
-    {
-      sum.stress[numbers[k]] += stress[k];
+      numbers[grid.faces[face].boundary].push_back(result.first_point[face] + k);
     }
   }
+  for (BoundaryPoints &b : boundaries)
+  {
+    for (const std::size_t k : numbers[b.boundary])
+    {
+      b.points.push_back(points[k]);
+    }
+  }
+  const auto stress = field.complete_sum(boundaries);
+  for (std::size_t i = 0; i < boundaries.size(); ++i)
+  {
+    const std::vector<std::size_t> &of_boundary = numbers[boundaries[i].boundary];
+    for (std::size_t k = 0; k < of_boundary.size(); ++k)
+    {
+      result.stress[of_boundary[k]] += stress[i][k];
+    }
+  }
+  return result;
 }
 
 void BoundaryLoad::integrate_sum(const TractionField &field, unsigned face, const Sum &sum, std::vector<unsigned> &rest,
@@ -117,24 +122,13 @@ void BoundaryLoad::integrate_sum(const TractionField &field, unsigned face, cons
     return;
   }
   const auto boundary = grid.faces[face].boundary;
-  const std::vector<unsigned> &vanishing = sum.vanishing.at(boundary), &others = sum.others.at(boundary);
   Piece piece = whole(face);
   measure(piece);
   const double length = 0.5 * sum.near_ratio * std::max(piece.length[0], piece.length[1]);
-  std::vector<unsigned> near, wrong;
+  std::vector<unsigned> near;
   field.append_near(piece.centre, piece.radius, length, near);
-  std::set_union(near.begin(), near.end(), vanishing.begin(), vanishing.end(), std::back_inserter(wrong));
-  std::set_difference(near.begin(), near.end(), vanishing.begin(), vanishing.end(), std::back_inserter(rest));
-  work.lengths.assign(others.size(), 0.);
-  field.smooth_lengths(piece.centre, piece.radius, others, work.lengths);
-  for (std::size_t i = 0; i < others.size(); ++i)
-  {
-    if (work.lengths[i] < length)
-    {
-      wrong.push_back(others[i]);
-      rest.push_back(others[i]);
-    }
-  }
+  std::copy_if(near.begin(), near.end(), std::back_inserter(rest),
+               [&](unsigned source) { return !field.vanishes_on(source, boundary); });
 
   work.samples.clear();
   append_points(piece, {sum.order, sum.order}, work.samples);
@@ -144,9 +138,9 @@ void BoundaryLoad::integrate_sum(const TractionField &field, unsigned face, cons
     work.points.push_back(s.position);
   }
   work.stresses.assign(work.points.size(), {});
-  if (!wrong.empty())
+  if (!rest.empty())
   {
-    field.add_stress(wrong, work.points, work.stresses);
+    field.add_stress(rest, work.points, work.stresses);
   }
   for (std::size_t i = 0; i < work.stresses.size(); ++i)
   {
@@ -154,6 +148,6 @@ void BoundaryLoad::integrate_sum(const TractionField &field, unsigned face, cons
   }
   add_samples(face, result, work);
   result.n_points += work.samples.size();
-  result.n_evaluations += work.samples.size() * wrong.size();
+  result.n_evaluations += work.samples.size() * rest.size();
 }
 } // namespace ddfem::fem

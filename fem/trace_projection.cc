@@ -38,6 +38,11 @@ public:
   {
     return field.sum(points);
   }
+  std::vector<std::vector<dealii::SymmetricTensor<2, 3>>> complete_sum(
+      std::span<const BoundaryPoints> parts) const override
+  {
+    return field.complete_sum(parts);
+  }
   void append_near(const dealii::Point<3> &centre, double radius, double length,
                    std::vector<unsigned> &sources) const override
   {

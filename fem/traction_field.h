@@ -13,6 +13,15 @@
 
 namespace ddfem::fem
 {
+/// Points (nm) of this rank on one boundary, and what the sum of the first sources misses there.
+struct BoundaryPoints
+{
+  dealii::types::boundary_id boundary;
+  std::vector<unsigned> vanishing; ///< sources among the first whose traction is zero there: too much in the sum
+  std::vector<unsigned> others;    ///< the other sources whose traction is not
+  std::vector<dealii::Point<3>> points;
+};
+
 /// Stress field sigma~ (MPa, sample frame) whose traction loads the boundary: a sum over sources 0 ... n_sources() - 1,
 /// each with its own singularities. Implemented by the caller. All members are local and are called by several threads
 /// at once, each with its own arguments.
@@ -38,19 +47,28 @@ public:
 
   /// If the field is to be summed at so many points in all: whether to sum all sources at the same points, corrected for those that are
   /// too near for these, with a relative error of summation_error(). Then the first so many sources (perhaps none) are summed by sum(),
-  /// faster than one by one, and the others are interpolated. Without a value every source is integrated by itself.
+  /// complete_sum() adds the others, faster than one by one. Without a value every source is integrated by itself.
   virtual std::optional<unsigned> n_summed(std::size_t /*n_points*/) const { return {}; }
   virtual double summation_error() const { return 0.; }
-  /// Stress (MPa) of these sources at points of this rank (nm). Collective over the ranks of the mesh.
+  /// Stress (MPa) of the first sources at points of this rank (nm). Collective over the ranks of the mesh.
   virtual std::vector<dealii::SymmetricTensor<2, 3>> sum(std::span<const dealii::Point<3>> /*points*/) const
   {
     return {};
   }
-  /// Appends, in ascending order, those of them that may have smooth lengths below `length` in a ball (nm), and perhaps others.
+  /// For each boundary, the stress (MPa) at its points of the other sources less that of the vanishing ones. Local. Unless overridden, one
+  /// by one.
+  virtual std::vector<std::vector<dealii::SymmetricTensor<2, 3>>> complete_sum(
+      std::span<const BoundaryPoints> boundaries) const;
+  /// Appends, in ascending order, the sources that may have smooth lengths below `length` in a ball (nm), and perhaps others.
   virtual void append_near(const dealii::Point<3> & /*centre*/, double /*radius*/, double /*length*/,
                            std::vector<unsigned> & /*sources*/) const
   {
   }
+
+protected:
+  /// `values` += `sign` times the stress of some sources at points, in parallel.
+  void add_in_parallel(std::span<const unsigned> sources, double sign, std::span<const dealii::Point<3>> points,
+                       std::span<dealii::SymmetricTensor<2, 3>> values) const;
 };
 
 /// Integrals of t = sigma~ n over the whole closed boundary, n outward, summed over the ranks.

@@ -190,8 +190,8 @@ template <class T> HWY_INLINE Vector<T> displacement_of(const LegImageData &d, c
   const Vector<T> r = x - vector_of<T>(d.origin), c = vector_of<T>(d.c);
   const Radii<T> k(r);
   const T of_chi(d.of_chi), of_psi(d.of_psi), of_lambda(d.of_lambda), cx = c.x * r.x + c.y * r.y;
-  // The unit of length in the logarithm is a rigid translation.
-  const T chi_p = T(-0.5) * (r.z * k.s - log(k.s));
+  // The unit of length in the logarithm is a rigid translation. The constant makes chi harmonic.
+  const T chi_p = T(0.25) - T(0.5) * (r.z * k.s - log(k.s));
   const T of_c = of_chi * chi_p - of_psi * k.s + of_lambda * k.lambda_p;
   const T of_r = cx * (of_psi * k.psi_q + of_lambda * k.lambda_q - T(0.5) * of_chi * k.s * k.s);
   const T of_c_z = of_psi * k.lambda_p - of_chi * k.s - of_lambda * k.v3;

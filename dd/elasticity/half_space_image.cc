@@ -5,6 +5,7 @@
 #include "dd/elasticity/image_quadrature.h"
 #include "dd/elasticity/vectorised/image_kernels.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -173,6 +174,13 @@ void SegmentImage::add_displacement(const DisplacementBatch &batch) const
   add_image_displacement(data, batch);
 }
 
+SegmentImage SegmentImage::loosened(const double tolerance) const
+{
+  SegmentImage result = *this;
+  result.data.tolerance = std::max(tolerance, data.tolerance);
+  return result;
+}
+
 double SegmentImage::distance(const Vec3 &x) const
 {
   return std::sqrt(distance_point_segment(x, data.start, data.end).squared);
@@ -234,5 +242,12 @@ void PiercingImage::add_displacement(const DisplacementBatch &batch) const
 {
   add_piercing(
       data, batch, [&] { add_image_displacement(data, batch); }, [&](const Vec3 &x) { return displacement(x); });
+}
+
+PiercingImage PiercingImage::loosened(const double tolerance) const
+{
+  PiercingImage result = *this;
+  result.data.tolerance = std::max(tolerance, data.tolerance);
+  return result;
 }
 } // namespace ddfem

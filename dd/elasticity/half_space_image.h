@@ -33,7 +33,7 @@
 
 namespace ddfem
 {
-/// What all points share. Internal to dd/elasticity.
+/// What all points share. For the kernels and for expansions.
 struct SegmentImageData
 {
   IsotropicMedium medium;
@@ -87,6 +87,10 @@ public:
   /// Distance (nm) of @p x from the singularities of the stress, which lie on the mirror image.
   double distance(const Vec3 &x) const;
 
+  const SegmentImageData &parameters() const { return data; }
+  /// The same image with a quadrature of no less error than @p tolerance.
+  SegmentImage loosened(double tolerance) const;
+
 private:
   SegmentImageData data;
 };
@@ -112,6 +116,8 @@ public:
 
   /// As SegmentImage::distance(); mirrored legs run away from the body, so that their end is nearest.
   double distance(const Vec3 &x) const { return (x - data.origin).norm(); }
+
+  const LegImageData &parameters() const { return data; }
 
 private:
   LegImageData data;
@@ -141,6 +147,10 @@ public:
   void add_displacement(const DisplacementBatch &batch) const;
 
   double distance(const Vec3 &x) const { return (x - data.origin).norm(); }
+
+  const PiercingImageData &parameters() const { return data; }
+  /// The same image with a quadrature of no less error than @p tolerance.
+  PiercingImage loosened(double tolerance) const;
 
 private:
   PiercingImageData data;

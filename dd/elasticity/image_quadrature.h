@@ -1,4 +1,4 @@
-// The quadrature along the image of a segment. Internal to dd/elasticity.
+// The quadrature along the image of a segment.
 #pragma once
 
 #include "dd/elasticity/half_space_image.h"

@@ -37,4 +37,9 @@ double translation_cost(const int order)
 {
   return 0.1 * std::pow(order + 1, 3);
 }
+
+double half_line_translation_cost(const int source_order, const int target_order)
+{
+  return 5e-4 * std::pow(source_order + 1, 2) * std::pow(target_order + 1, 2);
+}
 } // namespace ddfem::fmm

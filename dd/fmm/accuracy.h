@@ -16,4 +16,7 @@ int order_at_distance(int order, double distance);
 /// Cost of a translation of given order in evaluations of a segment at a point: measured on one core with AVX-512.
 /// A constant, so that the tree and all results are the same in every run.
 double translation_cost(int order);
+
+/// The same of a translation that integrates (half_line_translation.h), in evaluations of the image of a segment at a point.
+double half_line_translation_cost(int source_order, int target_order);
 } // namespace ddfem::fmm

@@ -158,6 +158,42 @@ LocalDisplacement::LocalDisplacement(const double nu, const int order, const Vec
   }
 }
 
+// From u to the stress: -8 pi (1-nu)/mu sigma_ab = 4 nu delta_ab div P + (2-4nu) (d_a P_b + d_b P_a) - 2 y_i d_a d_b P_i + 2 d_a d_b Q.
+LocalDisplacementStress::LocalDisplacementStress(const IsotropicMedium &medium, const int order, const Vec3 &centre_,
+                                                 const double size_, const Row *fields, const double *q)
+    : degree(std::max(order - 1, 0)), centre(centre_), size(size_), coefficients(3 * n_harmonics(degree))
+{
+  constexpr std::size_t component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  const auto &axis = known_gradient_terms(order);
+  const std::size_t n = n_harmonics(order), n_stress = n_harmonics(degree);
+  RowBuffer potentials(n), first[3];
+  std::copy(fields, fields + n, potentials.rows());
+  for (std::size_t k = 0; k < n; ++k)
+    potentials(k, 3) = q[k];
+  for (std::size_t a = 0; a < 3; ++a)
+    first[a] = derivative(axis[a], potentials);
+  const double nu = medium.nu, scale = -medium.mu / (8 * std::numbers::pi * (1 - nu) * size * size);
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = a; b < 3; ++b)
+    {
+      const RowBuffer second = derivative(axis[b], first[a]);
+      const std::size_t c = component[a][b];
+      for (std::size_t k = 0; k < n_stress; ++k)
+      {
+        const double div = first[0](k, 0) + first[1](k, 1) + first[2](k, 2);
+        coefficients(3 * k, c) = scale * ((2 - 4 * nu) * (first[a](k, b) + first[b](k, a)) +
+                                          (a == b ? 4 * nu * div : 0.0) + 2 / size * second(k, 3));
+        for (std::size_t i = 0; i < 3; ++i)
+          coefficients(3 * k, 6 + 6 * i + c) = -2 * scale * second(k, i);
+      }
+    }
+}
+
+void LocalDisplacementStress::add(const StressBatch &batch) const
+{
+  add_local_expansion(degree, centre, size, coefficients, batch);
+}
+
 void LocalDisplacement::add(const DisplacementBatch &batch) const
 {
   add_local_expansion(degree, centre, size, coefficients, batch);

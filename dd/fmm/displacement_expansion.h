@@ -39,4 +39,21 @@ private:
   double size;
   RowBuffer coefficients; ///< see LocalStress; rows for three components instead of six
 };
+
+/// The stress of that displacement.
+class LocalDisplacementStress
+{
+public:
+  LocalDisplacementStress(const IsotropicMedium &medium, int order, const Vec3 &centre, double size, const Row *fields,
+                          const double *q);
+
+  /// Adds the stress, MPa.
+  void add(const StressBatch &batch) const;
+
+private:
+  int degree; ///< of the expansions of the stress
+  Vec3 centre;
+  double size;
+  RowBuffer coefficients; ///< see LocalStress
+};
 } // namespace ddfem::fmm

@@ -40,6 +40,19 @@ void add_outer_products(const std::size_t n, const Row *source_moments, const Ro
   }
 }
 
+DDFEM_FMM_EVERY_PROCESSOR
+void add_outer_products(const std::size_t n, const Row *source_moments, const Row *strength, Row *fields)
+{
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    const Row moment = source_moments[k];
+    Row sum = fields[k];
+    for (std::size_t i = 0; i < row_width; ++i)
+      sum += moment[i] * strength[i];
+    fields[k] = sum;
+  }
+}
+
 RowBuffer derivative(const std::vector<GradientTerm> &terms, const RowBuffer &expansion)
 {
   RowBuffer result(expansion.size());

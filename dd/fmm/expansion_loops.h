@@ -21,6 +21,8 @@ void add_weighted(std::size_t n, double weight, const Row *values, Row *sum);
 /// source; @p q_strength: of Q.
 void add_outer_products(std::size_t n, const Row *source_moments, const Row *strength, const Row *q_strength,
                         Row *fields, double *q);
+/// The same without Q.
+void add_outer_products(std::size_t n, const Row *source_moments, const Row *strength, Row *fields);
 
 /// d/dx_axis of an expansion in regular harmonics.
 RowBuffer derivative(const std::vector<GradientTerm> &terms, const RowBuffer &expansion);

@@ -28,19 +28,27 @@ private:
   std::clock_t start = std::clock();
 };
 
-TreeSettings tree_settings(const MultipoleSettings &settings, const int order, const double smallest_box)
+TreeSettings tree_settings(const MultipoleSettings &settings, const int order, const double smallest_box,
+                           const int n_antiderivatives)
 {
   TreeSettings s;
+  const auto cost = [&](const double distance)
+  {
+    return n_antiderivatives > 0
+               ? half_line_translation_cost(order, order_at_distance(order - n_antiderivatives, distance))
+               : translation_cost(order_at_distance(order, distance));
+  };
   for (int distance2 = 0; distance2 <= 27; ++distance2)
-    s.translation_cost.push_back(settings.translation_cost_factor *
-                                 translation_cost(order_at_distance(order, std::sqrt(distance2))));
+    s.translation_cost.push_back(settings.translation_cost_factor * cost(std::sqrt(distance2)));
   s.smallest_box = smallest_box;
   return s;
 }
 
-int order_of(const MultipoleSettings &settings)
+/// Of the moments. Integration lowers the degree, and two more keep the error that others have (measured).
+int order_of(const MultipoleSettings &settings, const int n_antiderivatives)
 {
-  return settings.order > 0 ? settings.order : expansion_order(settings.tolerance);
+  const int order = settings.order > 0 ? settings.order : expansion_order(settings.tolerance);
+  return std::min(order + (n_antiderivatives > 0 ? n_antiderivatives + 2 : 0), max_order);
 }
 
 /// Translates one box: fields, and Q with its new reference point; @p shift (nm) from the old one.
@@ -68,10 +76,10 @@ std::size_t octant_of(const Box &box)
 
 MultipoleSum::MultipoleSum(const MultipoleSettings &given, const RootGrid &grid,
                            const std::span<const SourceExtent> sources, const std::span<const Vec3> points,
-                           const double smallest_box, const std::size_t n_values)
-    : settings(given), expansion_order_(order_of(given)),
-      tree(grid, sources, points, tree_settings(given, expansion_order_, smallest_box)), values(n_values),
-      multipole(0, 0), local(0, 0)
+                           const double smallest_box, const std::size_t n_values, const int n_antiderivatives_)
+    : settings(given), n_antiderivatives(n_antiderivatives_), expansion_order_(order_of(given, n_antiderivatives_)),
+      tree(grid, sources, points, tree_settings(given, expansion_order_, smallest_box, n_antiderivatives_)),
+      values(n_values), multipole(0, 0), local(0, 0)
 {
   for (std::size_t c = 0; c < 3; ++c)
     for (const std::uint32_t i : tree.point_order())
@@ -99,6 +107,7 @@ void MultipoleSum::make_translations(const RootGrid &grid)
     for (const FarLink &l : tree.far_links(root))
       for (const std::int16_t o : l.offset)
         largest_offset = std::max(largest_offset, std::abs(o));
+  std::uint32_t n_translations = 0;
   const int n = 2 * largest_offset + 1, volume = n * n * n;
   far_number.assign(static_cast<std::size_t>(volume), std::numeric_limits<std::uint32_t>::max());
   for (std::size_t box = 0; box < tree.boxes().size(); ++box)
@@ -109,10 +118,23 @@ void MultipoleSum::make_translations(const RootGrid &grid)
       std::uint32_t &number = far_number[static_cast<std::size_t>(k)];
       if (number != std::numeric_limits<std::uint32_t>::max())
         continue;
-      number = static_cast<std::uint32_t>(far.size());
-      const Vec3 d = -edges.cwiseProduct(Vec3(l.offset[0], l.offset[1], l.offset[2]));
-      far.emplace_back(Shift::far, order_at_distance(expansion_order_, d.norm()), d);
+      number = n_translations++;
+      add_far_translation(-edges.cwiseProduct(Vec3(l.offset[0], l.offset[1], l.offset[2])));
     }
+}
+
+void MultipoleSum::add_far_translation(const Vec3 &shift)
+{
+  if (n_antiderivatives == 0)
+  {
+    far.emplace_back(Shift::far, order_at_distance(expansion_order_, shift.norm()), shift);
+    return;
+  }
+  // Boxes are cubes here, and shifts whole numbers.
+  const long rho_squared = std::lround(shift[0] * shift[0] + shift[1] * shift[1]), z = std::lround(shift[2]);
+  const int target_order = order_at_distance(local_order(), shift.norm());
+  far_integrals.emplace_back(half_line_matrices(n_antiderivatives, expansion_order_, target_order, rho_squared, z),
+                             shift);
 }
 
 std::uint32_t MultipoleSum::far_translation(const std::array<std::int16_t, 3> &offset) const
@@ -173,10 +195,59 @@ void MultipoleSum::translate_chunk(const std::uint32_t begin, const std::uint32_
   {
     while (last < tasks.size() && last - first < row_width && tasks[last].translation == tasks[first].translation)
       ++last;
-    const Translation &translation = far[tasks[first].translation];
-    for (std::size_t k = first; k < last; ++k)
-      translation.add(multipole.fields(tasks[k].source), local.of(tasks[k].target).fields);
-    add_far_q(translation, std::span(tasks).subspan(first, last - first));
+    const auto some = std::span(tasks).subspan(first, last - first);
+    if (n_antiderivatives > 0)
+      add_far_integrals(far_integrals[some.front().translation], some);
+    else
+      add_far(far[some.front().translation], some);
+  }
+}
+
+void MultipoleSum::add_far(const Translation &translation, const std::span<const Task> tasks)
+{
+  for (const Task &t : tasks)
+    translation.add(multipole.fields(t.source), local.of(t.target).fields);
+  add_far_q(translation, tasks);
+}
+
+void MultipoleSum::add_far_integrals(const HalfLineTranslation &translation, const std::span<const Task> tasks)
+{
+  const std::size_t n_in = n_harmonics(translation.source_order()), n_out = n_harmonics(translation.target_order());
+  const double size = tree.size(tree.boxes()[tasks[0].target]), unit = std::pow(size, n_antiderivatives);
+  const Vec3 shift = size * translation.vector();
+  alignas(row_size) Row in[n_harmonics(max_order)];
+  alignas(row_size) Row out[n_harmonics(max_order)];
+  double moved[n_harmonics(max_order)];
+  for (std::size_t first = 0; first < tasks.size(); first += 2) // P and Q of two boxes side by side
+  {
+    const auto pair = tasks.subspan(first, std::min<std::size_t>(2, tasks.size() - first));
+    std::fill(in, in + n_in, Row{});
+    std::fill(out, out + n_out, Row{});
+    for (std::size_t i = 0; i < pair.size(); ++i)
+    {
+      const Row *const fields = multipole.fields(pair[i].source);
+      move_reference_point(n_in, shift, fields, multipole.q(pair[i].source), moved);
+      for (std::size_t k = 0; k < n_in; ++k)
+      {
+        for (std::size_t c = 0; c < 3; ++c)
+          in[k][4 * i + c] = fields[k][c];
+        in[k][4 * i + 3] = moved[k];
+      }
+    }
+    translation.add(in, out);
+    // The logarithm of the size is a translation of all points; it must be the same on all levels.
+    for (const int m : {1, -1})
+      out[harmonic_index(1, m)] += 0.5 * std::log(size) * in[harmonic_index(1, m)];
+    for (std::size_t i = 0; i < pair.size(); ++i)
+    {
+      const ExpansionView target = local.of(pair[i].target);
+      for (std::size_t k = 0; k < n_out; ++k)
+      {
+        for (std::size_t c = 0; c < 3; ++c)
+          target.fields[k][c] += unit * out[k][4 * i + c];
+        target.q[k] += unit * out[k][4 * i + 3];
+      }
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // Fields of many sources at many points by a fast multipole method: what stress and displacement share.
 #pragma once
 
+#include "dd/fmm/half_line_translation.h"
 #include "dd/fmm/octree.h"
 #include "dd/fmm/translation.h"
 
@@ -65,12 +66,16 @@ public:
 
   const Octree &octree() const { return tree; }
   int order() const { return expansion_order_; }
+  /// Degree of the local expansions.
+  int local_order() const { return expansion_order_ - n_antiderivatives; }
   const PhaseTimes &times() const { return seconds; }
 
 protected:
-  /// @p smallest_box: boxes are not divided below this edge length, nm. @p n_values: components of the field.
+  /// @p smallest_box: boxes are not divided below this edge length, nm. @p n_values: components of the field. @p n_antiderivatives: how
+  /// often the potentials of the moments are integrated over z, 0 or 3; then all points must lie above all sources, with a
+  /// face of boxes between them (half_line_translation.h), and only P and Q are translated.
   MultipoleSum(const MultipoleSettings &settings, const RootGrid &grid, std::span<const SourceExtent> sources,
-               std::span<const Vec3> points, double smallest_box, std::size_t n_values);
+               std::span<const Vec3> points, double smallest_box, std::size_t n_values, int n_antiderivatives = 0);
 
   /// Collective: every rank of @p comm computes a share of about equal cost; all get all values.
   void compute(MPI_Comm comm, Part part);
@@ -108,6 +113,7 @@ private:
   };
 
   void make_translations(const RootGrid &grid);
+  void add_far_translation(const Vec3 &shift);
   std::uint32_t far_translation(const std::array<std::int16_t, 3> &offset) const;
 
   void choose_share(MPI_Comm comm);
@@ -116,17 +122,21 @@ private:
   void moments_of(std::size_t box);
   void translate_far();
   void translate_chunk(std::uint32_t begin, std::uint32_t end);
+  void add_far(const Translation &translation, std::span<const Task> tasks);
   void add_far_q(const Translation &translation, std::span<const Task> tasks);
+  void add_far_integrals(const HalfLineTranslation &translation, std::span<const Task> tasks);
   void pass_down();
   void pass_down_to(std::size_t box);
   void gather(MPI_Comm comm);
 
   MultipoleSettings settings;
+  int n_antiderivatives;
   int expansion_order_;
   Octree tree;
   std::array<std::vector<double>, 3> x;    ///< points in the tree's order
   std::vector<std::vector<double>> values; ///< component by component, in the tree's order
   std::vector<Translation> far, to_parent, to_child;
+  std::vector<HalfLineTranslation> far_integrals; ///< instead of far
   int largest_offset = 3;
   std::vector<std::uint32_t> far_number; ///< translation by offset, a cube
   Expansions multipole, local;

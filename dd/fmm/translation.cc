@@ -1,5 +1,7 @@
 #include "dd/fmm/translation.h"
 
+#include "dd/fmm/row_products.h"
+
 #include <array>
 #include <cmath>
 #include <mutex>
@@ -124,73 +126,6 @@ const std::uint16_t *axial_order(const int order)
   return all[static_cast<std::size_t>(order)].of_harmonic.data();
 }
 
-constexpr std::size_t rows_at_once = 4;
-
-/// out[i] = sum_j matrix[i][j] in[j] for @p n_rows rows; row positions by @p place_in and @p place_out.
-template <std::size_t n_rows, class PlaceIn, class PlaceOut>
-DDFEM_FMM_INLINE void multiply_rows(const double *matrix, const std::size_t n, const Row *in, PlaceIn place_in,
-                                    Row *out, PlaceOut place_out, const std::size_t first)
-{
-  Row sum[n_rows] = {};
-  for (std::size_t j = 0; j < n; ++j)
-  {
-    const Row value = in[place_in(j)];
-    for (std::size_t i = 0; i < n_rows; ++i)
-      sum[i] += matrix[i * n + j] * value;
-  }
-  for (std::size_t i = 0; i < n_rows; ++i)
-    out[place_out(first + i)] = sum[i];
-}
-
-template <class PlaceIn, class PlaceOut>
-DDFEM_FMM_INLINE void multiply(const double *matrix, const std::size_t n, const Row *in, PlaceIn place_in, Row *out,
-                               PlaceOut place_out)
-{
-  std::size_t i = 0;
-  for (; i + rows_at_once <= n; i += rows_at_once)
-    multiply_rows<rows_at_once>(matrix + i * n, n, in, place_in, out, place_out, i);
-  if (i + 2 <= n)
-  {
-    multiply_rows<2>(matrix + i * n, n, in, place_in, out, place_out, i);
-    i += 2;
-  }
-  if (i < n)
-    multiply_rows<1>(matrix + i * n, n, in, place_in, out, place_out, i);
-}
-
-/// Turns about z by the angle whose multiples are in @p phase: coordinates in which the vector has phi = 0.
-DDFEM_FMM_INLINE void turn_to_axis(const int order, const double *phase, const Row *in, Row *out)
-{
-  for (int l = 0; l <= order; ++l)
-  {
-    const Row *const from = in + harmonic_index(l, 0);
-    Row *const to = out + harmonic_index(l, 0);
-    to[0] = from[0];
-    for (int m = 1; m <= l; ++m)
-    {
-      const double c = phase[2 * m], s = phase[2 * m + 1];
-      to[m] = c * from[m] + s * from[-m];
-      to[-m] = c * from[-m] - s * from[m];
-    }
-  }
-}
-
-DDFEM_FMM_INLINE void add_turned_back(const int order, const double *phase, const Row *in, Row *out)
-{
-  for (int l = 0; l <= order; ++l)
-  {
-    const Row *const from = in + harmonic_index(l, 0);
-    Row *const to = out + harmonic_index(l, 0);
-    to[0] += from[0];
-    for (int m = 1; m <= l; ++m)
-    {
-      const double c = phase[2 * m], s = phase[2 * m + 1];
-      to[m] += c * from[m] - s * from[-m];
-      to[-m] += c * from[-m] + s * from[m];
-    }
-  }
-}
-
 DDFEM_FMM_EVERY_PROCESSOR
 void translate(const int order, const double *phase, const double *rotation, const double *axial,
                const double *backward, const std::uint16_t *axial_place, const Row *source, Row *target)
@@ -203,11 +138,11 @@ void translate(const int order, const double *phase, const double *rotation, con
     const std::size_t zero = harmonic_index(l, 0);
     const auto n = static_cast<std::size_t>(l);
     multiply(
-        rotation, n + 1, a, [zero](std::size_t j) { return zero + j; }, b,
+        rotation, n + 1, n + 1, a, [zero](std::size_t j) { return zero + j; }, b,
         [zero, axial_place](std::size_t i) { return std::size_t{axial_place[zero + i]}; });
     rotation += (n + 1) * (n + 1);
     multiply(
-        rotation, n, a, [zero](std::size_t j) { return zero - 1 - j; }, b,
+        rotation, n, n, a, [zero](std::size_t j) { return zero - 1 - j; }, b,
         [zero, axial_place](std::size_t i) { return std::size_t{axial_place[zero - 1 - i]}; });
     rotation += n * n;
   }
@@ -218,7 +153,7 @@ void translate(const int order, const double *phase, const double *rotation, con
     for (int part = 0; part < (m == 0 ? 1 : 2); ++part, begin += n)
     {
       const auto place = [begin](std::size_t j) { return begin + j; };
-      multiply(axial, n, b, place, a, place);
+      multiply(axial, n, n, b, place, a, place);
     }
     axial += n * n;
   }
@@ -227,11 +162,11 @@ void translate(const int order, const double *phase, const double *rotation, con
     const std::size_t zero = harmonic_index(l, 0);
     const auto n = static_cast<std::size_t>(l);
     multiply(
-        backward, n + 1, a, [zero, axial_place](std::size_t j) { return std::size_t{axial_place[zero + j]}; }, b,
+        backward, n + 1, n + 1, a, [zero, axial_place](std::size_t j) { return std::size_t{axial_place[zero + j]}; }, b,
         [zero](std::size_t i) { return zero + i; });
     backward += (n + 1) * (n + 1);
     multiply(
-        backward, n, a, [zero, axial_place](std::size_t j) { return std::size_t{axial_place[zero - 1 - j]}; }, b,
+        backward, n, n, a, [zero, axial_place](std::size_t j) { return std::size_t{axial_place[zero - 1 - j]}; }, b,
         [zero](std::size_t i) { return zero - 1 - i; });
     backward += n * n;
   }

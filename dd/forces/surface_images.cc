@@ -82,7 +82,7 @@ double SurfaceImages::RayTurn::distance(const Vec3 &x) const
 
 SurfaceImages::SurfaceImages(const LineSystem &lines, const std::span<const ImagePlane> image_planes,
                              const ImageSettings &settings)
-    : planes_of_line(lines.lines().size(), 0), planes_of_ray(lines.rays().size(), 0)
+    : medium(lines.medium()), planes_of_line(lines.lines().size(), 0), planes_of_ray(lines.rays().size(), 0)
 {
   if (!(settings.depth > 0))
     return;
@@ -295,6 +295,30 @@ std::vector<Vec3> SurfaceImages::displacement(const std::span<const Vec3> points
         std::span(values).subspan(first, n));
   }
   return values;
+}
+
+std::vector<Ball> SurfaceImages::bounding_balls() const
+{
+  // In the frame of the plane; a turned ray may come near anywhere.
+  struct
+  {
+    Ball operator()(const SegmentImage &i) const
+    {
+      return {0.5 * (i.parameters().start + i.parameters().end), 0.5 * i.parameters().length};
+    }
+    Ball operator()(const LegImage &i) const { return {i.parameters().origin, 0.0}; }
+    Ball operator()(const PiercingImage &i) const { return {i.parameters().origin, 0.0}; }
+    Ball operator()(const RayTurn &i) const { return {i.origin, 1e9}; }
+  } ball_of;
+  std::vector<Ball> balls;
+  balls.reserve(pieces.size());
+  for (const Piece &piece : pieces)
+  {
+    const Frame &frame = planes[piece.plane];
+    const Ball local = std::visit(ball_of, piece.field);
+    balls.push_back({frame.point + frame.to_local.transpose() * local.centre, local.radius});
+  }
+  return balls;
 }
 
 double SurfaceImages::image_distance(const std::size_t image, const Vec3 &x) const

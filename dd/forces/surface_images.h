@@ -11,7 +11,11 @@
 #pragma once
 
 #include "dd/elasticity/half_space_image.h"
+#include "dd/fmm/multipole_sum.h"
 #include "dd/forces/line_system.h"
+#include "dd/geometry/ball_blocks.h"
+
+#include <mpi.h>
 
 #include <cstddef>
 #include <span>
@@ -50,6 +54,14 @@ public:
   /// Displacement at points of the grain, nm, single-valued; up to a rigid translation where lines pierce a face.
   std::vector<Vec3> displacement(std::span<const Vec3> points) const;
 
+  /// stress(points) by fast multipoles, with a relative error of @p settings. @p faces: of the points, unless empty; a point gets no images under the
+  /// plane of its own face. Collective: every rank of @p comm has all points and gets all values.
+  std::vector<SymTensor> multipole_stress(std::span<const Vec3> points, const fmm::MultipoleSettings &settings,
+                                          MPI_Comm comm, std::span<const int> faces = {}) const;
+  /// displacement(points) likewise.
+  std::vector<Vec3> multipole_displacement(std::span<const Vec3> points, const fmm::MultipoleSettings &settings,
+                                           MPI_Comm comm) const;
+
   bool empty() const { return pieces.empty(); }
 
   /// Whether the images cancel the tractions of a line (ray), numbered as in LineSystem, on a face.
@@ -64,6 +76,8 @@ public:
   void add_stress(std::span<const unsigned> images, std::span<const Vec3> points, std::span<SymTensor> values) const;
   /// Adds the displacement of some of the images, in ascending order, at points, nm, in one thread.
   void add_displacement(std::span<const unsigned> images, std::span<const Vec3> points, std::span<Vec3> values) const;
+  /// Around the singularities of each image that are nearest to the grain.
+  std::vector<Ball> bounding_balls() const;
   /// Lower bound of the distance of a point of the grain from the singularities of one image, nm.
   double image_distance(std::size_t image, const Vec3 &x) const;
 
@@ -125,12 +139,17 @@ private:
   void add_displacement_of(std::size_t n, PieceNumber &&number, std::span<const Vec3> points,
                            std::span<Vec3> values) const;
   template <typename Buffer> static Buffer local_points(const Frame &frame, std::span<const Vec3> points);
+  template <class Value, class SumPlane>
+  std::vector<Value> sum_planes(std::span<const Vec3> points, std::span<const int> faces, double tolerance,
+                                SumPlane &&sum_plane) const;
+  static std::vector<Vec3> in_frame(const Frame &frame, std::span<const Vec3> points);
   void add_plane(const LineSystem &lines, std::size_t plane, const ImageSettings &settings);
   void add_lines(const LineSystem &lines, std::size_t plane, const ImageSettings &settings, NodeFluxes &fluxes);
   void add_rays(const LineSystem &lines, std::size_t plane, const ImageSettings &settings, NodeFluxes &fluxes);
   void add_legs(const LineSystem &lines, std::size_t plane, const ImageSettings &settings, const NodeFluxes &fluxes);
   bool is_freed(const std::vector<PlaneSet> &sets, std::size_t i, int face_id) const;
 
+  IsotropicMedium medium{};
   std::vector<Frame> planes;
   std::vector<Piece> pieces; // sorted by plane
   std::vector<RemainingLeg> legs;
