@@ -132,6 +132,21 @@ std::string Simulation::energy_line() const
   return out.str();
 }
 
+std::string Simulation::images_line() const
+{
+  std::ostringstream out;
+  const std::size_t n = finite_grain->planes_with_images().size();
+  out << "images      ";
+  if (parameters.grain.image_depth == 0)
+    out << "none (Image depth 0)\n";
+  else if (n == 0)
+    out << "none: no face is flat, free, and a surface of its own with the grain on one side\n";
+  else
+    out << "of lines within " << finite_grain->depth_of_images() << " nm of " << n << " flat free face"
+        << (n > 1 ? "s" : "") << "\n";
+  return out.str();
+}
+
 std::string Simulation::summary() const
 {
   const auto &m = parameters.medium;
@@ -143,7 +158,8 @@ std::string Simulation::summary() const
     out << "grain       height " << finite_grain->height() << " nm, section " << finite_grain->section()
         << " nm^2, volume " << finite_grain->volume() << " nm^3\n"
         << "elasticity  " << finite_grain->n_dofs() << " unknowns, modulus under these boundary conditions "
-        << finite_grain->unit_load_modulus() * 1e-3 << " GPa\n";
+        << finite_grain->unit_load_modulus() * 1e-3 << " GPa\n"
+        << images_line();
   else
     out << "volume      " << reference_volume() << " nm^3\n";
   const SlipSystems systems = parameters.slip_systems();
