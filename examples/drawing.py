@@ -54,34 +54,53 @@ def surface_polygons(grain):
     return np.array(polygons)
 
 
-def cut(x, u, value, point, normal):
-    """The parts (points, displacements, values) of a polygon on the two sides of a plane; nothing is interpolated across."""
+def sides(x, u, point, normal, slip):
+    """Depths of the vertices of a polygon behind a plane, and their displacements on its back and front. In the plane itself, where
+    the displacement jumps by multiples of @slip, the written one errs by halves of it: it is shifted to that of the next vertex."""
     depth = (x - point) @ normal
+    on = np.abs(depth) < 1e-12
+    if on.any() and not on.all():
+        u = u.copy()
+        for i in np.flatnonzero(on):
+            j = next(j % len(x) for step in range(1, len(x)) for j in (i + step, i - step) if not on[j % len(x)])
+            u[i] += 0.5 * round(2 * (u[j] - u[i]) @ slip / (slip @ slip)) * slip
+            depth[i] = np.copysign(1e-12, depth[j])
+    return depth, u
+
+
+def cut(x, u, point, normal, slip):
+    """The parts (points, displacements) of a polygon on the two sides of a plane; nothing is interpolated across where the
+    displacement jumps by @slip (a vector) or more."""
+    depth, u = sides(x, u, point, normal, slip)
     if (depth >= 0).all() or (depth < 0).all():
-        return [(x, u, value)]
+        return [(x, u)]
     parts = []
     for inside in (depth >= 0, depth < 0):
-        points, owners = [], []
+        points, displacements = [], []
         for i in range(len(x)):
             j = (i + 1) % len(x)
             if inside[i]:
                 points.append(x[i])
-                owners.append(i)
+                displacements.append(u[i])
             if inside[i] != inside[j]:
-                points.append(x[i] + depth[i] / (depth[i] - depth[j]) * (x[j] - x[i]))
-                owners.append(i if inside[i] else j)
-        parts.append((np.array(points), u[owners], value[owners]))
+                fraction = depth[i] / (depth[i] - depth[j])
+                points.append(x[i] + fraction * (x[j] - x[i]))
+                jumps = abs((u[j] - u[i]) @ slip) > 0.5 * slip @ slip
+                displacements.append(u[i if inside[i] else j] if jumps else u[i] + fraction * (u[j] - u[i]))
+        parts.append((np.array(points), np.array(displacements)))
     return parts
 
 
-def deformed_surface(ax, grain, value, magnification, view, label, planes=(), levels=None):
-    """Surface displaced by @magnification times the displacement, coloured by @value at its points, cut along planes (point, normal)."""
+def deformed_surface(ax, grain, slip, magnification, view, label, planes=(), zero=0.0, levels=None):
+    """Surface displaced by @magnification times the displacement, coloured by the component along the Burgers vector @slip (m) less
+    @zero, in units of it, and cut along planes (point, normal)."""
     x, u = grain['points'].astype(float), grain['displacement_m'].astype(float)
-    pieces = [(x[c], u[c], value[c]) for c in surface_polygons(grain)]
+    pieces = [(x[c], u[c]) for c in surface_polygons(grain)]
     for point, normal in planes:
-        pieces = [part for piece in pieces for part in cut(*piece, point, normal)]
-    level = matplotlib.colors.Normalize(*(levels or (value.min(), value.max())))
-    colours = matplotlib.cm.viridis(level([piece[2].mean() for piece in pieces]))
+        pieces = [part for piece in pieces for part in cut(*piece, point, normal, slip)]
+    values = [(piece[1].mean(axis=0) @ slip) / (slip @ slip) - zero for piece in pieces]
+    level = matplotlib.colors.Normalize(*(levels or (min(values), max(values))))
+    colours = matplotlib.cm.viridis(level(values))
     light = np.array([0.7 + 0.3 * abs(unit_normal(piece[0]) @ [0.9, 0.25, 0.6]) for piece in pieces])
     colours[:, :3] *= np.clip(light, 0.5, 1)[:, None]
     deformed = [project(piece[0] + magnification * piece[1], **view) for piece in pieces]

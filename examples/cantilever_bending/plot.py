@@ -37,9 +37,9 @@ def body_edges():
 
 
 def stage_rows(history, stage):
-    """Rows of a stage and the one before it, which holds the state at its beginning."""
+    """Rows from the beginning of a stage to its end, which is the first row of the next one."""
     rows = np.flatnonzero(history['stage'] == stage)
-    return np.arange(max(rows[0] - 1, 0), rows[-1] + 1) if len(rows) else rows
+    return np.arange(rows[0], min(rows[-1] + 2, len(history['stage']))) if len(rows) else rows
 
 
 def curves(ax, history, height):
@@ -88,20 +88,24 @@ def main():
     plt.rcParams.update({'font.size': 9})
     fig = plt.figure(figsize=(11.4, 5))
     curves(fig.add_axes([0.062, 0.11, 0.25, 0.82]), history, height)
-    last_of = {s: [f for f in frames if stage[f[1]] == s][-1:] for s in (1, 2, 3, 4)}
+    end = {s: int(history['step'][stage_rows(history, s)[-1]]) for s in (1, 2, 3, 4)}
+
+    def at_end(collection, s):
+        return min(collection, key=lambda f: abs(f[1] - end[s]))
     picks = [(frames[0], 'sources'), (next((f for f in frames if exits[f[1]] > 0), frames[-1]), 'first exit')]
     most = history['surface exits'].max()
     picks += [(next((f for f in frames if exits[f[1]] > 0.9 * most), frames[-1]), 'last exits')]
-    picks += [(f, f'end of {name}') for s, name in enumerate(STAGES, 1) if name != 'hold' for f in last_of[s]]
+    picks += [(at_end(frames, s), f'end of {name}') for s, name in enumerate(STAGES, 1) if name != 'hold']
     for k, ((_, _, path), name) in enumerate(picks):
         drawing.dislocations(fig.add_axes([0.335 + 0.16 * (k % 2), 0.67 - 0.325 * (k // 2), 0.155, 0.275]),
                              reader.segments(path)[0], body_edges(), VIEW_LINES, name)
-    unloaded = last_of[3][0][1] if last_of[3] else frames[-1][1]
-    grain = reader.grain(next(path for _, step, path in reader.frames(directory, 'grain') if step == unloaded))
+    _, unloaded, path = at_end(reader.frames(directory, 'grain'), 3)
+    grain, row = reader.grain(path), int(np.flatnonzero(history['step'] == unloaded)[0])
     b = reader.log_number(directory, r'b = ([\d.e+-]+) nm') * 1e-9
-    drawing.deformed_surface(fig.add_axes([0.665, 0.08, 0.32, 0.85]), grain, grain['displacement_m'].astype(float) @ SLIP / b,
+    drawing.deformed_surface(fig.add_axes([0.665, 0.08, 0.32, 0.85]), grain, b * SLIP,
                              MAGNIFICATION, VIEW_SURFACE, 'displacement along the Burgers vector / b', [(s, NORMAL) for s in SOURCES])
-    fig.axes[-2].set_title(f'unloaded, displacements x {MAGNIFICATION}', fontsize=8, pad=2)
+    force = abs(1e6 * history['platen force z [N]'][row])
+    fig.axes[-2].set_title(f'unloaded ({force:.2f} µN), displacements x {MAGNIFICATION}', fontsize=8, pad=2)
     for label, x in (('(a)', 0.005), ('(b)', 0.33), ('(c)', 0.665)):
         fig.text(x, 0.96, label, fontsize=10)
     fig.savefig(os.path.join(directory, 'figure.png'), dpi=150)

@@ -72,10 +72,11 @@ def surface(ax, path, b):
     grain = reader.grain(path)
     x, u = grain['points'].astype(float), grain['displacement_m'].astype(float)
     along = u @ SLIP / b
-    along -= np.median(along[(x - SOURCE) @ NORMAL < -60e-9])
+    zero = np.median(along[(x - SOURCE) @ NORMAL < -60e-9])
+    along -= zero
     sign = np.sign(along.sum())
-    drawing.deformed_surface(ax, grain, sign * along, MAGNIFICATION, VIEW_STEP, 'displacement along the Burgers vector / b',
-                             [(SOURCE, NORMAL)], (0, np.ceil((sign * along).max())))
+    drawing.deformed_surface(ax, grain, sign * b * SLIP, MAGNIFICATION, VIEW_STEP, 'displacement along the Burgers vector / b',
+                             [(SOURCE, NORMAL)], sign * zero, (0, np.ceil((sign * along).max())))
     ax.set_title(f'displacements x {MAGNIFICATION}', fontsize=8, pad=2)
 
 
