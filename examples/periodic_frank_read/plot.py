@@ -47,7 +47,7 @@ def main():
         sys.exit(__doc__)
     directory = sys.argv[1]
     h, frames = reader.history(directory), reader.frames(directory, 'dislocations')
-    strain, stress, density = -100 * h['strain [-]'], -h['stress [Pa]'] / 1e6, h['dislocation density [1/m^2]']
+    strain, stress, density = 100 * abs(h['strain [-]']), -h['stress [Pa]'] / 1e6, h['dislocation density [1/m^2]']
     row = {int(s): k for k, s in enumerate(h['step'])}
     young = 2e9 * (reader.log_number(directory, r'mu = ([\d.e+-]+) GPa')
                    * (1 + reader.log_number(directory, r'nu = ([\d.e+-]+)')))
