@@ -90,7 +90,7 @@ def main():
                              reader.segments(path)[0], outline(), VIEW, f'{name}\n{twist[row[step]]:.2f}°/µm', [glide_plane()])
     grain = reader.grain(reader.frames(directory, 'grain')[-1][2])
     b = reader.log_number(directory, r'b = ([\d.e+-]+) nm') * 1e-9
-    drawing.deformed_surface(fig.add_axes([0.735, 0.03, 0.25, 0.9]), grain, np.array([0, 0, b]),
+    drawing.deformed_surface(fig.add_axes([0.735, 0.03, 0.225, 0.9]), grain, np.array([0, 0, b]),
                              MAGNIFICATION, VIEW, 'displacement along the axis / b', [(np.zeros(3), np.array([1.0, 0, 0]))])
     fig.axes[-2].set_title(f'unloaded, displacements x {MAGNIFICATION}', fontsize=8, pad=2)
     for label, x in (('(a)', 0.005), ('(b)', 0.4), ('(c)', 0.735)):
