@@ -25,10 +25,11 @@ for (above, below), kind in zip(grid.T, kinds):
     scale = np.abs(finest[:, 1]).max()
     for name in names:
         strain, stress = -curves[name][:, 0], -curves[name][:, 1]
-        above.plot(100 * strain, 1e-6 * stress, linewidth=1, label=name.split(', ', 1)[1])
+        style = {'linewidth': 1, 'linestyle': '--' if 'distorted' in name else '-'}
+        above.plot(100 * strain, 1e-6 * stress, label=name.split(', ', 1)[1], **style)
         common = strain <= -finest[-1, 0]
         difference = stress - np.interp(strain, -finest[:, 0], -finest[:, 1])
-        below.plot(100 * strain[common], 100 * difference[common] / scale, linewidth=1)
+        below.plot(100 * strain[common], 100 * difference[common] / scale, **style)
     above.set_title(f'{kind} pillar', fontsize=9)
     above.set_ylabel('compressive stress (MPa)', fontsize=8)
     above.legend(fontsize=7)

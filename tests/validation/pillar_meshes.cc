@@ -22,13 +22,15 @@ void check_pillar(Report &report, const std::string &name, const Section section
 {
   const Columns regular = run_and_check(report, name, section, cells, false),
                 distorted = run_and_check(report, name + ", distorted mesh", section, cells, true);
+  // Flat sides have images, without which the square pillar errs by 8e-5 at this strain. The round mesh that is read is a prism.
+  const double limit = section == Section::square ? 2e-5 : 0.01;
   report.below(name + ": stress on the distorted mesh against the regular one",
-               difference_of_curves(distorted, regular), 0.01);
+               difference_of_curves(distorted, regular), limit);
   if (section == Section::square)
   {
     const Columns finer = run_and_check(report, name + ", finer mesh", section, {4, 8}, false);
     report.below(name + ": stress on the regular mesh against the finer one", difference_of_curves(regular, finer),
-                 0.01);
+                 limit);
   }
 }
 } // namespace

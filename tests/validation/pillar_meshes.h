@@ -56,16 +56,26 @@ inline double pillar_radius()
   return pillar_width / std::sqrt(M_PI);
 }
 
-/// Physical surface of a face of the boundary: 1 side, 5 bottom, 6 top.
-inline int physical_surface(const dealii::Triangulation<3>::face_iterator &face)
+/// Physical surface of a face of the boundary: 1 to 4 the sides, 5 bottom, 6 top. A round side is one surface, 1. Flat sides are
+/// surfaces of their own: only then do they get images.
+inline int physical_surface(const Section section, const dealii::Triangulation<3>::face_iterator &face)
 {
-  const auto is_at = [&](const double z)
-  { return std::abs(face->vertex(0)[2] - z) < 1e-6 && std::abs(face->vertex(3)[2] - z) < 1e-6; };
-  return is_at(0) ? 5 : is_at(pillar_height) ? 6 : 1;
+  const auto is_at = [&](const unsigned axis, const double x)
+  { return std::abs(face->vertex(0)[axis] - x) < 1e-6 && std::abs(face->vertex(3)[axis] - x) < 1e-6; };
+  if (is_at(2, 0))
+    return 5;
+  if (is_at(2, pillar_height))
+    return 6;
+  if (section == Section::square)
+    for (const unsigned axis : {0U, 1U})
+      for (const int side : {0, 1})
+        if (is_at(axis, (side - 0.5) * pillar_width))
+          return 1 + 2 * static_cast<int>(axis) + side;
+  return 1;
 }
 
 /// Writes a mesh in gmsh's format 2.2.
-inline void write_gmsh(const dealii::Triangulation<3> &mesh, const std::string &file)
+inline void write_gmsh(const dealii::Triangulation<3> &mesh, const Section section, const std::string &file)
 {
   std::ofstream out(file);
   out.precision(17);
@@ -76,7 +86,7 @@ inline void write_gmsh(const dealii::Triangulation<3> &mesh, const std::string &
   for (const auto &face : mesh.active_face_iterators())
     if (face->at_boundary())
     {
-      const std::string id = std::to_string(physical_surface(face));
+      const std::string id = std::to_string(physical_surface(section, face));
       elements.push_back("3 2 " + id + ' ' + id);
       for (const unsigned v : {0U, 1U, 3U, 2U})
         elements.back() += ' ' + std::to_string(face->vertex_index(v) + 1);
@@ -106,7 +116,7 @@ inline void write_distorted_mesh(const std::string &file, const Section section,
   else
     fem::make_cylinder(mesh, pillar_radius(), pillar_height, cells.across, cells.along);
   dealii::GridTools::distort_random(factor, mesh, true, 7);
-  write_gmsh(mesh, file);
+  write_gmsh(mesh, section, file);
 }
 
 /// An aluminium pillar with three sources on two slip planes. @p mesh_file: empty for the program's own mesh.
@@ -162,14 +172,17 @@ inline Columns history_of(const coupling::InputDeck &deck)
   return test::read_history(directory.path + "/history.csv");
 }
 
+/// @p images: of the lines near flat sides.
 inline Columns run_pillar(const Section section, const Cells &cells, const unsigned degree, const bool distorted,
-                          const std::string &stages)
+                          const std::string &stages, const bool images = true)
 {
-  if (!distorted)
-    return history_of(pillar_deck(section, cells, degree, "", stages));
   const TemporaryPath file("pillar_mesh.msh");
-  write_distorted_mesh(file.path, section, cells, 0.2);
-  return history_of(pillar_deck(section, cells, degree, file.path, stages));
+  if (distorted)
+    write_distorted_mesh(file.path, section, cells, 0.2);
+  coupling::InputDeck deck = pillar_deck(section, cells, degree, distorted ? file.path : "", stages);
+  if (!images)
+    deck.set_from_command_line("Domain/Image depth=0");
+  return history_of(deck);
 }
 
 /// What must hold on every mesh.
