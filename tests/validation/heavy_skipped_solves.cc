@@ -333,7 +333,7 @@ void check_pillar(Report &report, const std::string &contact)
   check_run(report, contact, pillar(contact), o, tolerance, true);
 }
 
-/// With the recommended tolerance. The estimate should be an upper bound on grains that it was not set on.
+/// With the default tolerance. The estimate should be an upper bound on grains that it was not set on.
 void check_others(Report &report)
 {
   constexpr double tolerance = 1e-3;
