@@ -138,7 +138,7 @@ void add_domain(std::vector<ParameterEntry> &t)
       {s, "Elastic solver", "automatic", one_of("automatic|multigrid|direct"), "",
        "Preconditioner of the conjugate gradients: algebraic multigrid, or a factorisation that is kept (MUMPS), which "
        "takes more time once and more memory. Automatic: multigrid."});
-  t.push_back({s, "Correction tolerance", "0", between(0, 0.1), "",
+  t.push_back({s, "Correction tolerance", "1e-3", between(0, 0.1), "",
                "Steps do without an elastic solve as long as the error that this makes in the segment forces is "
                "estimated below "
                "this fraction of the force of the correction; 0: every step solves."});
