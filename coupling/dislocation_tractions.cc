@@ -36,12 +36,22 @@ DislocationTractions::DislocationTractions(const LineSystem &system, const Surfa
       ray_list.push_back(leg.ray);
       rays.add_ray(leg.ray.origin, leg.ray.direction, leg.ray.burgers);
     }
+  std::vector<Ball> around, around_rests;
+  const auto ball_of = [](const StraightLine &l) {
+    return Ball{0.5 * (l.start + l.end), 0.5 * (l.end - l.start).norm()};
+  };
+  if (images)
+    for (const auto &[line, face] : images->fading_lines())
+    {
+      rests.add_segment(line.start, line.end, line.burgers);
+      around_rests.push_back(ball_of(line));
+    }
   if (summation.method == SummationMethod::direct)
     return;
-  std::vector<Ball> around;
   for (const StraightLine &l : system.lines())
-    around.push_back({0.5 * (l.start + l.end), 0.5 * (l.end - l.start).norm()});
+    around.push_back(ball_of(l));
   balls = BallBlocks(around);
+  rest_balls = BallBlocks(around_rests);
   if (images)
     image_balls = BallBlocks(images->bounding_balls());
 }
@@ -129,21 +139,26 @@ void DislocationTractions::append_near(const dealii::Point<3> &centre, const dou
                                        std::vector<unsigned> &sources) const
 {
   const Vec3 x = to_vec3(centre);
-  std::vector<unsigned> candidates, of_images;
+  std::vector<unsigned> candidates;
   balls.append_touching(x, radius + length, candidates);
-  const auto n_before_images = static_cast<unsigned>(n_lines() + rays.size());
-  for (auto ray = static_cast<unsigned>(n_lines()); ray < n_before_images; ++ray)
+  for (auto ray = static_cast<unsigned>(n_lines()); ray < first_rest(); ++ray)
     candidates.push_back(ray);
-  image_balls.append_touching(x, radius + length, of_images);
-  for (const unsigned image : of_images)
-    candidates.push_back(n_before_images + image);
+  const auto append = [&](const BallBlocks &blocks, const std::size_t first)
+  {
+    std::vector<unsigned> numbers;
+    blocks.append_touching(x, radius + length, numbers);
+    for (const unsigned k : numbers)
+      candidates.push_back(static_cast<unsigned>(first) + k);
+  };
+  append(rest_balls, first_rest());
+  append(image_balls, first_image());
   std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(sources),
                [&](const unsigned source) { return distance(source, x) < radius + length; });
 }
 
 unsigned DislocationTractions::n_sources() const
 {
-  return static_cast<unsigned>(n_lines() + rays.size() + (images ? images->n_images() : 0));
+  return static_cast<unsigned>(first_image() + (images ? images->n_images() : 0));
 }
 
 bool DislocationTractions::vanishes_on(const unsigned source, const dealii::types::boundary_id boundary) const
@@ -155,6 +170,8 @@ bool DislocationTractions::vanishes_on(const unsigned source, const dealii::type
     return images->is_freed_of_line(source, face);
   if (is_image(source))
     return images->face_of_image(image_number(source)) == face;
+  if (is_rest(source))
+    return images->fading_lines()[source - first_rest()].face_id != face;
   const std::size_t ray = source - n_lines(), n_rays = line_system.rays().size();
   return ray < n_rays ? images->is_freed_of_ray(ray, face) : images->remaining_legs()[ray - n_rays].face_id != face;
 }
@@ -163,6 +180,11 @@ double DislocationTractions::distance(const unsigned source, const Vec3 &x) cons
 {
   if (is_image(source))
     return images->image_distance(image_number(source), x);
+  if (is_rest(source))
+  {
+    const StraightLine &l = images->fading_lines()[source - first_rest()].line;
+    return std::sqrt(distance_point_segment(x, l.start, l.end).squared);
+  }
   if (source >= n_lines())
   {
     const VirtualRay &r = ray_list[source - n_lines()];
@@ -188,16 +210,19 @@ void DislocationTractions::add_stress(const std::span<const unsigned> sources,
   StressBuffer buffer(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     buffer.set_point(i, points[i]);
-  std::vector<unsigned> of_lines, of_rays, of_images;
+  std::vector<unsigned> of_lines, of_rays, of_rests, of_images;
   for (const unsigned source : sources)
     if (is_image(source))
       of_images.push_back(static_cast<unsigned>(image_number(source)));
+    else if (is_rest(source))
+      of_rests.push_back(source - static_cast<unsigned>(first_rest()));
     else if (source < n_lines())
       of_lines.push_back(source);
     else
       of_rays.push_back(source - static_cast<unsigned>(n_lines()));
   add_segment_stress(line_system.medium(), line_system.segment_table(), of_lines, buffer.batch());
   add_ray_stress(line_system.medium(), rays, of_rays, buffer.batch());
+  add_segment_stress(line_system.medium(), rests, of_rests, buffer.batch());
   std::vector<SymTensor> sums;
   for (std::size_t i = 0; i < points.size(); ++i)
     sums.push_back(buffer.value(i));

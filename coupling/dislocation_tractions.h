@@ -31,8 +31,8 @@ inline bool use_multipoles_for_images(const SummationSettings &s, std::size_t n_
 std::vector<SymTensor> stress_of_images(const SurfaceImages &images, std::span<const Vec3> points,
                                         const SummationSettings &summation, MPI_Comm comm);
 
-/// Presents a LineSystem and the images of its lines to the FEM. Sources are the lines, the rays, the legs that the images leave
-/// on their faces, the images. On the face of an image the image and the lines and rays that it frees of tractions are left out:
+/// Presents a LineSystem and the images of its lines to the FEM. Sources are the lines, the rays, the legs and rests of lines that the
+/// images leave on their faces, the images. On the face of an image the image and the lines and rays that it frees of tractions are left out:
 /// their sum is zero there. The stress of the non-singular theory is analytic up to the distance sqrt(d^2 + a^2) in the complex
 /// plane, d being the distance to the line (or mirror image): that is its smooth length. Many lines, their rays and their images
 /// are summed by fast multipoles.
@@ -67,16 +67,19 @@ private:
   /// Of some lines by fast multipoles, at points of this rank, MPa.
   std::vector<SymTensor> stress_of_lines(std::span<const unsigned> numbers, std::span<const Vec3> points,
                                          const fmm::MultipoleSettings &settings) const;
-  /// Number of the image that a source is; beyond n_images() for others.
-  std::size_t image_number(unsigned source) const { return source - n_lines() - rays.size(); }
-  bool is_image(unsigned source) const { return source >= n_lines() + rays.size(); }
+  std::size_t first_rest() const { return n_lines() + rays.size(); }
+  std::size_t first_image() const { return first_rest() + rests.size(); }
+  bool is_rest(unsigned source) const { return source >= first_rest() && source < first_image(); }
+  bool is_image(unsigned source) const { return source >= first_image(); }
+  std::size_t image_number(unsigned source) const { return source - first_image(); }
 
   const LineSystem &line_system;
   const SurfaceImages *images;
   SummationSettings summation;
   MPI_Comm communicator;
-  BallBlocks balls, image_balls;    ///< around the lines and images, unless sums are direct
-  std::vector<VirtualRay> ray_list; ///< rays of the lines, then legs
-  LineTable rays;                   ///< the same
+  BallBlocks balls, rest_balls, image_balls; ///< around the lines, rests and images, unless sums are direct
+  std::vector<VirtualRay> ray_list;          ///< rays of the lines, then legs
+  LineTable rays;                            ///< the same
+  LineTable rests;                           ///< of lines with fading images
 };
 } // namespace ddfem::coupling

@@ -21,6 +21,13 @@ constexpr double same_place = 1e-6;
 constexpr double on_face = 1e-3;
 /// Points that are evaluated together.
 constexpr std::size_t portion = 32;
+
+/// Part of the Burgers vector that has an image, by the depth of a line: one up to three quarters of the range.
+double weight_of_image(const double line_depth, const double range)
+{
+  const double x = std::clamp((range - line_depth) / (0.25 * range), 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
 } // namespace
 
 /// Net Burgers vectors that arrive at the ends of the lines with an image, by position.
@@ -114,13 +121,16 @@ void SurfaceImages::add_lines(const LineSystem &lines, const std::size_t plane, 
     const StraightLine &line = lines.lines()[i];
     const Vec3 start = frame.local(line.start), end = frame.local(line.end);
     const double outside = -std::min(frame.unlimited(line.start)[2], frame.unlimited(line.end)[2]);
-    if (std::min(start[2], end[2]) >= settings.depth || outside > on_face)
+    const double weight = weight_of_image(std::min(start[2], end[2]), settings.depth);
+    if (weight == 0 || outside > on_face)
       continue;
     planes_of_line[i] |= PlaneSet{1} << plane;
-    pieces.push_back(
-        {plane, SegmentImage(lines.medium(), start, end, frame.to_local * line.burgers, settings.tolerance)});
-    fluxes.add(line.start, -line.burgers);
-    fluxes.add(line.end, line.burgers);
+    const Vec3 burgers = weight * line.burgers;
+    pieces.push_back({plane, SegmentImage(lines.medium(), start, end, frame.to_local * burgers, settings.tolerance)});
+    if (weight < 1)
+      fading.push_back({{line.start, line.end, line.burgers - burgers}, frame.face_id});
+    fluxes.add(line.start, -burgers);
+    fluxes.add(line.end, burgers);
   }
 }
 

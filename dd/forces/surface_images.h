@@ -8,6 +8,9 @@
 // the images (at `depth`, or through another face) the flux of its Burgers vector is closed by a leg into the depth
 // (half_space_image.h), whose image is added too, so that the sum of the images is in equilibrium in the whole grain. The
 // tractions of these legs remain on the face, with opposite sign.
+//
+// Within the last quarter of the range images fade out: a segment that comes from the depth gets its image little by little, since what the
+// finite elements solve for should change as smoothly from step to step as the lines move.
 #pragma once
 
 #include "dd/elasticity/half_space_image.h"
@@ -34,13 +37,14 @@ struct ImagePlane
 
 struct ImageSettings
 {
-  /// Segments with an end nearer to a plane than this have an image, nm; 0: no images. Lines outside have none.
+  /// Segments with an end nearer to a plane than this have an image, nm; 0: no images. Lines outside have none. From three quarters of it
+  /// on images are those of a part of the Burgers vector.
   double depth = 0;
   double tolerance = 1e-6; ///< relative error of the image of a segment; balance and reactions are as good as this
 };
 
 /// Image fields of one state of the lines. Adding them to the infinite field of the same lines leaves, on each plane,
-/// only the tractions of segments without an image and of minus the legs.
+/// only the tractions of segments without an image, of the rest of segments with a fading one, and of minus the legs.
 class SurfaceImages
 {
 public:
@@ -64,7 +68,7 @@ public:
 
   bool empty() const { return pieces.empty(); }
 
-  /// Whether the images cancel the tractions of a line (ray), numbered as in LineSystem, on a face.
+  /// Whether the images cancel the tractions of a line (ray), numbered as in LineSystem, on a face, but for those of fading_lines().
   bool is_freed_of_line(std::size_t line, int face_id) const { return is_freed(planes_of_line, line, face_id); }
   bool is_freed_of_ray(std::size_t ray, int face_id) const { return is_freed(planes_of_ray, ray, face_id); }
 
@@ -88,6 +92,14 @@ public:
     int face_id;
   };
   const std::vector<RemainingLeg> &remaining_legs() const { return legs; }
+
+  /// What fading images leave of the tractions of their lines, by the rest of the Burgers vector.
+  struct FadingLine
+  {
+    StraightLine line;
+    int face_id;
+  };
+  const std::vector<FadingLine> &fading_lines() const { return fading; }
 
 private:
   /// Local frame of a plane: z into the grain, origin on the plane.
@@ -153,6 +165,7 @@ private:
   std::vector<Frame> planes;
   std::vector<Piece> pieces; // sorted by plane
   std::vector<RemainingLeg> legs;
+  std::vector<FadingLine> fading;
   std::vector<PlaneSet> planes_of_line, planes_of_ray;
 };
 } // namespace ddfem

@@ -87,6 +87,9 @@ TEST_P(SurfaceImagesOfANetwork, LeaveOnTheirFaceWhatTheySayTheyLeave)
     for (const auto &leg : images.remaining_legs())
       if (leg.face_id == 5)
         expected += ray_stress(medium, x, leg.ray.origin, leg.ray.direction, leg.ray.burgers);
+    for (const auto &[line, face] : images.fading_lines())
+      if (face == 5)
+        expected += segment_stress(medium, x, line.start, line.end, line.burgers);
     for (unsigned i = 0; i < images.n_images(); ++i)
       if (images.face_of_image(i) != 5)
         expected += images.stress(std::vector<unsigned>{i}, x);
