@@ -68,8 +68,22 @@ SweptLoops::SweptLoops(const SweptArea &area)
   loops.insert(loops.end(), open_ones.begin(), open_ones.end());
 }
 
+Vec3 beside(const Vec3 &x)
+{
+  constexpr double distance = 1e-6; // nm
+  return x + distance * Vec3(0.5377, 0.7213, 0.4368);
+}
+
 namespace
 {
+std::vector<Vec3> all_beside(const std::span<const Vec3> points)
+{
+  std::vector<Vec3> result;
+  result.reserve(points.size());
+  std::transform(points.begin(), points.end(), std::back_inserter(result), [](const Vec3 &x) { return beside(x); });
+  return result;
+}
+
 /// Of the finite loops, at points of this rank.
 std::vector<Vec3> multipole_displacement(const double nu, const SweptLoops &swept, const GatheredPoints &all,
                                          const std::size_t n_mine, const SweptSummation &summation)
@@ -81,9 +95,10 @@ std::vector<Vec3> multipole_displacement(const double nu, const SweptLoops &swep
 }
 } // namespace
 
-std::vector<Vec3> swept_displacement(const double nu, const SweptLoops &swept, const std::span<const Vec3> points,
+std::vector<Vec3> swept_displacement(const double nu, const SweptLoops &swept, const std::span<const Vec3> at,
                                      const SweptSummation &summation)
 {
+  const std::vector<Vec3> points = all_beside(at);
   const GatheredPoints all = gather_points(points, summation.communicator);
   if (!summation.use_multipoles(swept, all.points.size()))
     return triangle_displacements(nu, swept.loops, points);
@@ -118,7 +133,7 @@ std::vector<dealii::SymmetricTensor<2, 3>> SweptDisplacement::sum(const std::spa
 {
   std::vector<dealii::SymmetricTensor<2, 3>> result;
   result.reserve(points.size());
-  const GatheredPoints all = gather_points(to_vectors(points), summation.communicator);
+  const GatheredPoints all = gather_points(all_beside(to_vectors(points)), summation.communicator);
   for (const Vec3 &u : multipole_displacement(nu, swept, all, points.size(), summation))
     result.push_back(as_stress(u));
   return result;
@@ -159,7 +174,7 @@ void SweptDisplacement::add_displacement(const std::span<const unsigned> sources
     loops.push_back(swept.loops[s]);
   DisplacementBuffer buffer(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
-    buffer.set_point(i, points[i]);
+    buffer.set_point(i, beside(points[i]));
   add_triangle_displacement(nu, loops, buffer.batch());
   for (std::size_t i = 0; i < points.size(); ++i)
     u[i] += buffer.value(i);

@@ -27,6 +27,11 @@ struct SweptLoops
   std::span<const TriangularLoop> open() const { return std::span(loops).subspan(n_finite); }
 };
 
+/// Where the displacement of swept area at @p x is taken, nm. Nodes of a mesh lie in glide planes and on the paths of surface nodes, where it has several
+/// values. Rounding would choose among them for each triangle anew, and area that is swept forth and back would not cancel. This is a point
+/// beside, in a direction that no plane of a lattice is likely to contain, farther than rounding of the nodes' positions reaches.
+Vec3 beside(const Vec3 &x);
+
 /// How the displacements of many loops are summed over the points of all ranks.
 struct SweptSummation
 {

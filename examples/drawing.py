@@ -56,7 +56,7 @@ def surface_polygons(grain):
 
 def sides(x, u, point, normal, slip):
     """Depths of the vertices of a polygon behind a plane, and their displacements on its back and front. In the plane itself, where
-    the displacement jumps by multiples of @slip, the written one errs by halves of it: it is shifted to that of the next vertex."""
+    the displacement jumps by multiples of @slip, the written one is that of one side: it is shifted to that of the next vertex."""
     depth = (x - point) @ normal
     on = np.abs(depth) < 1e-12
     if on.any() and not on.all():

@@ -68,13 +68,11 @@ template <class T> struct SeenVertex
 /// The triple product of the edges keeps all digits where the three directions are nearly equal.
 template <class T>
 HWY_INLINE T solid_angle_of(const SeenVertex<T> &v1, const SeenVertex<T> &v2, const SeenVertex<T> &v3,
-                            const TriangularLoop &loop)
+                            const Vector<T> &normal)
 {
-  const T height = dot(v1.r, vector_of<T>(loop.normal));
-  const T numerator = select(abs(height) < T(std::abs(loop.side)), T(loop.side), height);
   const T denominator =
       v1.norm * v2.norm * v3.norm + dot(v1.r, v2.r) * v3.norm + dot(v2.r, v3.r) * v1.norm + dot(v3.r, v1.r) * v2.norm;
-  return T(2.0) * atan2(numerator, denominator);
+  return T(2.0) * atan2(dot(v1.r, normal), denominator);
 }
 
 /// What an edge adds: log = ln[(R_B + R_B.t)/(R_A + R_A.t)] (Barnett's f = log b x t), and his
@@ -130,7 +128,7 @@ HWY_INLINE Vector<T> displacement_of(const double nu, const TriangularLoop &loop
     f += (T(edge.sign) * terms.log) * vector_of<T>(edge.b_cross_t);
     g += T(edge.sign) * terms.g;
   }
-  const T omega = solid_angle_of(seen[0], seen[1], seen[2], loop);
+  const T omega = solid_angle_of(seen[0], seen[1], seen[2], vector_of<T>(loop.normal));
   const double factor = 1.0 / (8.0 * std::numbers::pi * (1.0 - nu));
   return (T(1.0 / (4.0 * std::numbers::pi)) * omega) * vector_of<T>(loop.burgers) - T(factor * (1.0 - 2.0 * nu)) * f +
          T(factor) * g;

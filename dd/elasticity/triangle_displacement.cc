@@ -71,9 +71,6 @@ TriangularLoop::TriangularLoop(const LoopVertex &v1, const LoopVertex &v2, const
     edges[k] = edge_between(vertices, k, (k + 1) % 3, b);
   const auto away = [&](const LoopVertex &v) { return v.at_infinity ? v.value : Vec3(v.value - vertices[0].value); };
   normal = away(vertices[1]).cross(away(vertices[2]));
-  // Far above the rounding of points in a plane, far below all lengths; a direction that no plane of a lattice contains.
-  constexpr double distance = 1e-10; // nm
-  side = std::copysign(distance * normal.norm(), normal.dot(Vec3(0.5377, 0.7213, 0.4368)));
 }
 
 double solid_angle(const Vec3 &x, const Vec3 &p1, const Vec3 &p2, const Vec3 &p3)
@@ -86,7 +83,7 @@ double solid_angle(const Vec3 &x, const LoopVertex &v1, const LoopVertex &v2, co
   const TriangularLoop loop(v1, v2, v3, Vec3::Zero());
   const auto at = HWY_NAMESPACE::vector_of<double>(x);
   const auto see = [&](const std::size_t k) { return HWY_NAMESPACE::SeenVertex<double>(loop.vertices[k], at); };
-  return HWY_NAMESPACE::solid_angle_of(see(0), see(1), see(2), loop);
+  return HWY_NAMESPACE::solid_angle_of(see(0), see(1), see(2), HWY_NAMESPACE::vector_of<double>(loop.normal));
 }
 
 Vec3 triangle_displacement(double nu, const Vec3 &x, const Vec3 &p1, const Vec3 &p2, const Vec3 &p3, const Vec3 &b)

@@ -24,10 +24,6 @@ struct TriangularLoop
   std::array<LoopVertex, 3> vertices;
   std::array<Edge, 3> edges;
   Vec3 normal; ///< product of the edges (or directions at infinity) that leave the first vertex
-  /// `normal` times a tiny distance (nm), with a sign that all triangles of a plane and sense share. A point closer to the plane than this is taken
-  /// to be at this distance on the side of the sign: on the nodes of a mesh that lie in a glide plane, rounding would decide for each triangle anew,
-  /// and area swept forth and back would not cancel.
-  double side;
   Vec3 burgers;
 
   /// At least one vertex must be finite.

@@ -12,14 +12,15 @@ namespace ddfem::fmm
 {
 namespace
 {
-/// Positions of cosines (m >= 0) and sines (m > 0) in the order of the matrices.
-constexpr std::size_t n_cosines(const int order)
-{
-  return static_cast<std::size_t>((order + 1) * (order + 2) / 2);
-}
+/// Numbers of sines (m > 0) and cosines (m >= 0), which the matrices take one after the other.
 constexpr std::size_t n_sines(const int order)
 {
-  return static_cast<std::size_t>(order * (order + 1) / 2);
+  const auto n = static_cast<std::size_t>(order);
+  return n * (n + 1) / 2;
+}
+constexpr std::size_t n_cosines(const int order)
+{
+  return n_harmonics(order) - n_sines(order);
 }
 
 /// The factors between real harmonics and I_lm: sqrt(2) (m > 0)/sqrt((l-m)! (l+m)!), at the positions of cosines.
@@ -30,8 +31,11 @@ std::vector<double> normalisation(const int order)
     root_factorial.push_back(root_factorial.back() * std::sqrt(static_cast<double>(n)));
   for (int l = 0; l <= order; ++l)
     for (int m = 0; m <= l; ++m)
-      factors.push_back((m > 0 ? std::sqrt(2.0) : 1.0) / (root_factorial[static_cast<std::size_t>(l - m)] *
-                                                          root_factorial[static_cast<std::size_t>(l + m)]));
+    {
+      const int minus = l - m, plus = l + m;
+      factors.push_back((m > 0 ? std::sqrt(2.0) : 1.0) / (root_factorial[static_cast<std::size_t>(minus)] *
+                                                          root_factorial[static_cast<std::size_t>(plus)]));
+    }
   return factors;
 }
 
@@ -51,7 +55,7 @@ template <class Weight> double series(const int m, const int n, const double t, 
 } // namespace
 
 IrregularFunctions::IrregularFunctions(const int highest, const double rho, const double z)
-    : n_degrees(highest + 4), values(static_cast<std::size_t>(n_degrees * n_degrees), 0.0)
+    : n_degrees(highest + 4), values(static_cast<std::size_t>(n_degrees) * static_cast<std::size_t>(n_degrees), 0.0)
 {
   // ((1/R) d/dR)^k = sum_i (-1)^i (k-1+i)!/(2^i i! (k-1-i)!) R^(-k-i) (d/dR)^(k-i), applied to Lambda, psi and chi as functions of
   // R and z: d/d(rho^2) is 1/(2R) d/dR at constant z, and (d_x + i d_y)^m f(rho^2) = (2 rho exp(i phi))^m f^(m).
@@ -82,12 +86,14 @@ IrregularFunctions::IrregularFunctions(const int highest, const double rho, cons
 
 double &IrregularFunctions::entry(const int n, const int m)
 {
-  return values[static_cast<std::size_t>(m * n_degrees + n + 3)];
+  const int position = m * n_degrees + n + 3;
+  return values[static_cast<std::size_t>(position)];
 }
 
 double IrregularFunctions::operator()(const int n, const int m) const
 {
-  const double value = values[static_cast<std::size_t>(std::abs(m) * n_degrees + n + 3)];
+  const int position = std::abs(m) * n_degrees + n + 3;
+  const double value = values[static_cast<std::size_t>(position)];
   return m < 0 && m % 2 != 0 ? -value : value;
 }
 
@@ -97,7 +103,7 @@ HalfLineMatrices::HalfLineMatrices(const int n_antiderivatives, const int source
 {
   const IrregularFunctions function(source + target, rho, z);
   const std::vector<double> factors = normalisation(std::max(source, target));
-  const auto factor = [&](int l, int m) { return factors[n_cosines(l - 1) + static_cast<std::size_t>(m)]; };
+  const auto factor = [&](int l, int m) { return factors[n_sines(l) + static_cast<std::size_t>(m)]; };
   // The field of the real source is the real part of I (cosine) or of -i I (sine), whence the two terms.
   for (const bool is_cosine : {true, false})
     for (int j = 0; j <= target; ++j)

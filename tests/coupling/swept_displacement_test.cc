@@ -1,4 +1,5 @@
 // The displacement that swept area leaves at the nodes of the surface, from which slip steps are drawn.
+#include "coupling/face_displacements.h"
 #include "coupling/finite_grain.h"
 #include "loop_that_has_left.h"
 
@@ -6,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace ddfem::coupling
 {
@@ -111,9 +113,44 @@ TEST_F(SweptDisplacement, OfALoopInsideIsThatOfItsPresentLineHoweverItHasMoved)
   {
     Vec3 loop = Vec3::Zero();
     for (const SegmentIndex s : network.segments())
-      loop += triangle_displacement(medium.nu, nodes[k], apex, network.position(network.start(s)),
+      loop += triangle_displacement(medium.nu, beside(nodes[k]), apex, network.position(network.start(s)),
                                     network.position(network.end(s)), network.burgers(s));
     EXPECT_NEAR((swept[k] - loop).norm() / burgers.norm(), 0, 1e-10) << nodes[k].transpose();
+  }
+}
+
+TEST(SweptDisplacementAtNodesOfAPlane, ForthAndBackCancels)
+{
+  // Lines pass over nodes that lie in their glide plane, or along its rim through them, in other steps each time.
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto vector = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  for (int draw = 0; draw < 200; ++draw)
+  {
+    const Vec3 n = vector().normalized(), u = n.unitOrthogonal(), v = n.cross(u), centre = 100 * vector();
+    const auto in_plane = [&](double x, double y) { return Vec3(centre + x * u + y * v); };
+    // The segment from (x, 0) to (x, 30) goes from x = -20 to 20; its first end passes through the second node.
+    const std::vector<Vec3> nodes{in_plane(10 * uniform(random), 15 + 10 * uniform(random)),
+                                  in_plane(10 * uniform(random), 0)};
+    const auto passes = [&](const std::vector<int> &steps)
+    {
+      SweptArea area;
+      for (std::size_t pass = 0; pass < steps.size(); ++pass)
+        for (int k = 0; k < steps[pass]; ++k)
+        {
+          const double sign = pass % 2 == 0 ? 1 : -1;
+          const double from = sign * (-20 + 40.0 * k / steps[pass]), to = sign * (-20 + 40.0 * (k + 1) / steps[pass]);
+          const Vec3 q = in_plane(from, 30), p_new = in_plane(to, 0);
+          area.add_triangle(in_plane(from, 0), p_new, q, 0.25 * u, {});
+          area.add_triangle(q, p_new, in_plane(to, 30), 0.25 * u, {});
+        }
+      return swept_displacement(0.3, SweptLoops(area), nodes, {});
+    };
+    const std::vector<Vec3> once = passes({7}), thrice = passes({5, 6, 4});
+    EXPECT_GT(once[0].norm(), 0.1) << "half the Burgers vector";
+    for (const std::size_t k : {0U, 1U})
+      EXPECT_LT((thrice[k] - once[k]).norm(), 1e-4)
+          << draw << " " << k; // the slope of the field over 1e-9 nm near its rim
   }
 }
 } // namespace

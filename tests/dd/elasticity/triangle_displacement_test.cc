@@ -206,39 +206,6 @@ TEST(SweptArea, DisplacementDoesNotDependOnTheSubdivision)
   EXPECT_LT(relative_error(u(p1, p2, inside) + u(p2, p3, inside) + u(p3, p1, inside), u(p1, p2, p3)), 1e-12);
 }
 
-TEST(SweptArea, ThatAPlaneIsSweptForthAndBackCancelsAtPointsInIt)
-{
-  // A mesh has nodes in glide planes, and a line may pass over them again and again, in other steps each time.
-  RandomVectors random(12);
-  for (int draw = 0; draw < 500; ++draw)
-  {
-    const Vec3 n = random.vector().normalized(), u = n.unitOrthogonal(), v = n.cross(u);
-    const Vec3 centre = 100 * random.vector(), b = 0.25 * u;
-    const auto in_plane = [&](double x, double y) { return Vec3(centre + x * u + y * v); };
-    const Vec3 point = in_plane(10 * random.vector()[0], 10 * random.vector()[0]);
-    // The segment from (x, -30) to (x, 30) goes from x = -20 to 20.
-    const auto pass = [&](const int steps, const bool forth)
-    {
-      Vec3 sum = Vec3::Zero();
-      for (int k = 0; k < steps; ++k)
-      {
-        double from = -20 + 40.0 * k / steps, to = -20 + 40.0 * (k + 1) / steps;
-        if (!forth)
-        {
-          from = -from;
-          to = -to;
-        }
-        const Vec3 p = in_plane(from, -30), q = in_plane(from, 30), p_new = in_plane(to, -30), q_new = in_plane(to, 30);
-        sum += triangle_displacement(nu, point, p, p_new, q, b) + triangle_displacement(nu, point, q, p_new, q_new, b);
-      }
-      return sum;
-    };
-    const Vec3 once = pass(7, true);
-    EXPECT_NEAR(once.norm(), 0.125, 0.1) << "half the Burgers vector, more or less";
-    EXPECT_LT((pass(5, true) + pass(6, false) + pass(4, true) - once).norm(), 1e-6);
-  }
-}
-
 /// A line from a fixed point over an inner node to a surface node, continued as a ray.
 struct LineWithRay
 {
