@@ -89,10 +89,10 @@ std::vector<std::vector<dealii::SymmetricTensor<2, 3>>> DislocationTractions::co
     const std::vector<Vec3> x = to_vectors(b.points);
     points.insert(points.end(), x.begin(), x.end());
     faces.insert(faces.end(), x.size(), static_cast<int>(b.boundary));
-    // All others but legs are images, and those under the plane of the boundary vanish there.
-    const auto n_legs =
+    // Legs and rests, then images; those under the plane of the boundary vanish there.
+    const auto n_before_images =
         std::find_if(b.others.begin(), b.others.end(), [this](unsigned s) { return is_image(s); }) - b.others.begin();
-    add_in_parallel(std::span(b.others).first(static_cast<std::size_t>(n_legs)), 1., b.points, values);
+    add_in_parallel(std::span(b.others).first(static_cast<std::size_t>(n_before_images)), 1., b.points, values);
     subtract(b.vanishing, b.points, settings, values);
   }
   if (!images || images->empty())

@@ -142,6 +142,9 @@ void read_mesh(const InputDeck &deck, Parameters &p)
 void read_grain(const InputDeck &deck, Parameters &p)
 {
   p.grain.elasticity.degree = deck.integer("Domain/Element degree");
+  // The flat facets of linear elements lie inside a round side, on which lines end.
+  if (p.grain.elasticity.degree == 1)
+    p.grain.elasticity.outside_tolerance = 0.25;
   p.grain.elasticity.relative_tolerance = deck.number("Domain/Elastic tolerance");
   p.grain.elasticity.traction_tolerance = deck.number("Domain/Traction tolerance");
   const std::string solver = deck.text("Domain/Elastic solver");

@@ -55,7 +55,7 @@ void straight_lines(Report &report, const double image_depth, const unsigned deg
   const std::vector<std::vector<double>> sizes{mirrored(graded(1, 4, 300)), {4}, graded(1, 12, 1000)};
   for (const bool screw : {true, false})
     for (const double d : print_only ? std::vector<double>{10.0, 7.0, 5.0, 4.0, 3.5, 3.0, 2.0, 1.0, 0.5, 0.2}
-                                     : std::vector<double>{10.0, 4.0, 3.5, 1.0, 0.2})
+                                     : std::vector<double>{10.0, 4.0, 1.0, 0.2})
     {
       const double error = measure_force(sizes, degree, d, screw, image_depth).error;
       char row[120];

@@ -136,7 +136,7 @@ TEST(MultipoleImages, OfOneImageFarAwayAreTheClosedForms)
 std::vector<ImageSource> many_images(const IsotropicMedium &medium, RandomVectors &random)
 {
   std::vector<ImageSource> images;
-  for (int k = 0; k < 120; ++k)
+  for (int k = 0; k < 70; ++k)
   {
     Vec3 x = 480 * random.vector();
     x[2] = std::abs(x[2]) / 8;
@@ -167,7 +167,7 @@ TEST(MultipoleImages, HaveTheRequestedError)
   RandomVectors random(3);
   const std::vector<ImageSource> images = many_images(medium, random);
   std::vector<Vec3> points;
-  for (int k = 0; k < 1500; ++k)
+  for (int k = 0; k < 900; ++k)
   {
     points.emplace_back(500 * random.vector());
     points.back()[2] = k % 3 == 0 ? 0 : 0.5 * std::abs(points.back()[2]);
