@@ -6,7 +6,6 @@
 #include "dd/fmm/grids_and_rays.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 

@@ -71,11 +71,11 @@ template <typename Add> void integrate_on_panel(int n, double begin, double end,
     add(begin + rule.points[i] * (end - begin), rule.weights[i] * (end - begin));
 }
 
-/// The same on panels of [0, @p length] that grow with the distance from the singularities. A single panel with a
-/// moderately small ellipse (n_gauss_points() > 0) is cheaper than two with large ones; the cost of a graded partition is
-/// nearly flat around an ellipse of rho = 2.3 (panels that grow by a factor of six).
-template <typename Add>
-void integrate_graded(const LineSingularities &singularities, double length, double tolerance, Add &&add)
+/// Calls @p visit(begin, end, n) for panels of [0, @p length] that grow with the distance from the singularities, with the numbers of points that
+/// they need. A single panel with a moderately small ellipse (n_gauss_points() > 0) is cheaper than two with large ones; the cost of a graded
+/// partition is nearly flat around an ellipse of rho = 2.3 (panels that grow by a factor of six).
+template <typename Visit>
+void for_each_graded_panel(const LineSingularities &singularities, double length, double tolerance, Visit &&visit)
 {
   constexpr double smallest_c = 0.5 * (2.2 + 1.0 / 2.2), relative_floor = 1e-8;
   double begin = 0.0;
@@ -83,10 +83,17 @@ void integrate_graded(const LineSingularities &singularities, double length, dou
   {
     const double end =
         std::min(length, begin + singularities.longest_panel(begin, smallest_c, relative_floor * length));
-    integrate_on_panel(n_gauss_points(std::max(singularities.ellipse(begin, end), smallest_c), tolerance), begin, end,
-                       add);
+    visit(begin, end, n_gauss_points(std::max(singularities.ellipse(begin, end), smallest_c), tolerance));
     begin = end;
   }
+}
+
+/// Calls @p add as integrate_on_panel(), on these panels.
+template <typename Add>
+void integrate_graded(const LineSingularities &singularities, double length, double tolerance, Add &&add)
+{
+  for_each_graded_panel(singularities, length, tolerance,
+                        [&](double begin, double end, int n) { integrate_on_panel(n, begin, end, add); });
 }
 
 /// One or the other, as the singularities demand.

@@ -33,6 +33,11 @@ int order_at_distance(const int order, const double distance)
   return std::max(2, static_cast<int>(std::ceil((order + 1) * ratio)) - 1);
 }
 
+double smallest_box(const double core_radius, const double tolerance)
+{
+  return core_radius / 2 / std::pow(tolerance, 0.25);
+}
+
 double translation_cost(const int order)
 {
   return 0.1 * std::pow(order + 1, 3);

@@ -13,6 +13,10 @@ int expansion_order(double tolerance);
 /// have at @p order.
 int order_at_distance(int order, double distance);
 
+/// Smallest boxes (nm) whose expansions may leave out the core beyond its second order: of relative order (a/d)^4, at distances d of two
+/// boxes and more.
+double smallest_box(double core_radius, double tolerance);
+
 /// Cost of a translation of given order in evaluations of a segment at a point: measured on one core with AVX-512.
 /// A constant, so that the tree and all results are the same in every run.
 double translation_cost(int order);

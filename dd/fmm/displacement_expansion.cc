@@ -57,14 +57,13 @@ public:
   /// Turns dipoles into moments of charges: S_k about the centre of a dipole is the derivative of S_k.
   void add_to(const double nu, const double size, const ExpansionView &target) const
   {
-    constexpr std::size_t row_of[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
     for (std::size_t j = 0; j < 3; ++j)
       for (const GradientTerm &t : known_gradient_terms(order)[j])
       {
         const double factor = t.factor / size;
         const Row &m = moments.rows()[t.to];
         for (std::size_t i = 0; i < 3; ++i)
-          target.fields[t.from][i] += factor * m[row_of[i][j]];
+          target.fields[t.from][i] += factor * m[component[i][j]];
         target.q[t.from] += factor * size * (j < 2 ? m[6 + j] : moments_last[t.to]);
       }
     for (std::size_t k = 0; k < n; ++k)
@@ -133,15 +132,25 @@ void add_moments(const int order, const double tolerance, const double nu, const
   sum.add_to(nu, size, moments);
 }
 
-LocalDisplacement::LocalDisplacement(const double nu, const int order, const Vec3 &centre_, const double size_,
-                                     const Row *fields, const double *q)
-    : degree(order), centre(centre_), size(size_), coefficients(3 * n_harmonics(order))
+namespace
 {
-  const std::size_t n = n_harmonics(order);
+/// P and Q in columns 0 to 3.
+RowBuffer beside_each_other(const std::size_t n, const Row *fields, const double *q)
+{
   RowBuffer potentials(n);
   std::copy(fields, fields + n, potentials.rows());
   for (std::size_t k = 0; k < n; ++k)
-    potentials(k, 3) = q[k]; // beside P, in fields 0 to 2
+    potentials(k, 3) = q[k];
+  return potentials;
+}
+} // namespace
+
+LocalDisplacement::LocalDisplacement(const double nu, const int order, const Vec3 &centre_, const double size_,
+                                     const Row *fields, const double *q)
+    : LocalExpansion(order, centre_, size_)
+{
+  const std::size_t n = n_harmonics(order);
+  const RowBuffer potentials = beside_each_other(n, fields, q);
   const double scale = -1 / (8 * std::numbers::pi * (1 - nu) * size);
   for (std::size_t k = 0; k < n; ++k)
     for (std::size_t m = 0; m < 3; ++m)
@@ -161,15 +170,12 @@ LocalDisplacement::LocalDisplacement(const double nu, const int order, const Vec
 // From u to the stress: -8 pi (1-nu)/mu sigma_ab = 4 nu delta_ab div P + (2-4nu) (d_a P_b + d_b P_a) - 2 y_i d_a d_b P_i + 2 d_a d_b Q.
 LocalDisplacementStress::LocalDisplacementStress(const IsotropicMedium &medium, const int order, const Vec3 &centre_,
                                                  const double size_, const Row *fields, const double *q)
-    : degree(std::max(order - 1, 0)), centre(centre_), size(size_), coefficients(3 * n_harmonics(degree))
+    : LocalExpansion(std::max(order - 1, 0), centre_, size_)
 {
-  constexpr std::size_t component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const auto &axis = known_gradient_terms(order);
   const std::size_t n = n_harmonics(order), n_stress = n_harmonics(degree);
-  RowBuffer potentials(n), first[3];
-  std::copy(fields, fields + n, potentials.rows());
-  for (std::size_t k = 0; k < n; ++k)
-    potentials(k, 3) = q[k];
+  const RowBuffer potentials = beside_each_other(n, fields, q);
+  RowBuffer first[3];
   for (std::size_t a = 0; a < 3; ++a)
     first[a] = derivative(axis[a], potentials);
   const double nu = medium.nu, scale = -medium.mu / (8 * std::numbers::pi * (1 - nu) * size * size);
@@ -187,15 +193,5 @@ LocalDisplacementStress::LocalDisplacementStress(const IsotropicMedium &medium, 
           coefficients(3 * k, 6 + 6 * i + c) = -2 * scale * second(k, i);
       }
     }
-}
-
-void LocalDisplacementStress::add(const StressBatch &batch) const
-{
-  add_local_expansion(degree, centre, size, coefficients, batch);
-}
-
-void LocalDisplacement::add(const DisplacementBatch &batch) const
-{
-  add_local_expansion(degree, centre, size, coefficients, batch);
 }
 } // namespace ddfem::fmm

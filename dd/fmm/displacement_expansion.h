@@ -24,36 +24,18 @@ namespace ddfem::fmm
 void add_moments(int order, double tolerance, double nu, const Vec3 &centre, double size,
                  std::span<const TriangularLoop> loops, const ExpansionView &moments);
 
-/// The displacement in one box from its local coefficients, prepared for evaluation at many points.
-class LocalDisplacement
+/// The displacement (nm) in one box from its local coefficients, prepared for evaluation at many points.
+class LocalDisplacement : public LocalExpansion<3>
 {
 public:
   LocalDisplacement(double nu, int order, const Vec3 &centre, double size, const Row *fields, const double *q);
-
-  /// Adds the displacement, nm.
-  void add(const DisplacementBatch &batch) const;
-
-private:
-  int degree;
-  Vec3 centre;
-  double size;
-  RowBuffer coefficients; ///< see LocalStress; rows for three components instead of six
 };
 
-/// The stress of that displacement.
-class LocalDisplacementStress
+/// The stress (MPa) of that displacement.
+class LocalDisplacementStress : public LocalExpansion<6>
 {
 public:
   LocalDisplacementStress(const IsotropicMedium &medium, int order, const Vec3 &centre, double size, const Row *fields,
                           const double *q);
-
-  /// Adds the stress, MPa.
-  void add(const StressBatch &batch) const;
-
-private:
-  int degree; ///< of the expansions of the stress
-  Vec3 centre;
-  double size;
-  RowBuffer coefficients; ///< see LocalStress
 };
 } // namespace ddfem::fmm

@@ -10,6 +10,9 @@
 
 namespace ddfem::fmm
 {
+/// Index of the component ab in xx yy zz xy xz yz.
+inline constexpr std::size_t component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+
 /// Gauss points along a source of length @p longest (over the box size): the remainder of an n-point rule falls like longest^2n, and at
 /// this order no more than order/2 + 1 points can be needed.
 int n_points_along(int order, double tolerance, double longest);
@@ -33,26 +36,43 @@ const std::array<std::vector<GradientTerm>, 3> &known_gradient_terms(int order);
 /// c_0 + y_0 c_1 + y_1 c_2 + y_2 c_3.
 void contract_harmonics(std::size_t n, const Row *harmonics, const Row *coefficients, const Row *y, Row *result);
 
-/// Adds that at the points of a batch, from expansions up to @p degree about @p centre (nm) in a box of @p size (nm).
-template <std::size_t n_values>
-void add_local_expansion(const int degree, const Vec3 &centre, const double size, const RowBuffer &coefficients,
-                         const PointBatch<n_values> &batch)
+/// A field in one box as contract_harmonics() evaluates it: three rows of coefficients per harmonic, first the components of the field, then
+/// those that are multiplied by y_0, y_1 and y_2.
+template <std::size_t n_values> class LocalExpansion
 {
   static_assert(n_values <= 6);
-  const std::size_t n = n_harmonics(degree);
-  alignas(row_size) Row harmonics[n_harmonics(max_order)];
-  for (std::size_t begin = 0; begin < batch.n; begin += row_width)
+
+public:
+  /// Adds the field at the points of a batch.
+  void add(const PointBatch<n_values> &batch) const
   {
-    const std::size_t count = std::min(row_width, batch.n - begin);
-    Row y[3] = {}, result[6];
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < count; ++i)
-        y[c][i] = (batch.x[c][begin + i] - centre[static_cast<int>(c)]) / size;
-    regular_harmonics(degree, y, harmonics);
-    contract_harmonics(n, harmonics, coefficients.rows(), y, result);
-    for (std::size_t c = 0; c < n_values; ++c)
-      for (std::size_t i = 0; i < count; ++i)
-        batch.value[c][begin + i] += result[c][i];
+    const std::size_t n = n_harmonics(degree);
+    alignas(row_size) Row harmonics[n_harmonics(max_order)];
+    for (std::size_t begin = 0; begin < batch.n; begin += row_width)
+    {
+      const std::size_t count = std::min(row_width, batch.n - begin);
+      Row y[3] = {}, result[6];
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t i = 0; i < count; ++i)
+          y[c][i] = (batch.x[c][begin + i] - centre[static_cast<int>(c)]) / size;
+      regular_harmonics(degree, y, harmonics);
+      contract_harmonics(n, harmonics, coefficients.rows(), y, result);
+      for (std::size_t c = 0; c < n_values; ++c)
+        for (std::size_t i = 0; i < count; ++i)
+          batch.value[c][begin + i] += result[c][i];
+    }
   }
-}
+
+protected:
+  /// Harmonics up to @p degree_ about @p centre_ (nm) in a box of @p size_ (nm), zero so far.
+  LocalExpansion(const int degree_, const Vec3 &centre_, const double size_)
+      : degree(degree_), centre(centre_), size(size_), coefficients(3 * n_harmonics(degree_))
+  {
+  }
+
+  int degree;
+  Vec3 centre;
+  double size;
+  RowBuffer coefficients;
+};
 } // namespace ddfem::fmm

@@ -141,17 +141,14 @@ private:
   /// Panels on which the depth D is smooth, with the points that the harmonics need too.
   void add_normal_tractions(const SegmentImageData &d)
   {
-    const auto branch = internal::branch_points(d.start, d.t, medium.a);
-    constexpr double smallest_c = 0.5 * (2.2 + 1.0 / 2.2), floor = 1e-8; // as integrate_graded()
-    for (double begin = 0; begin < d.length;)
-    {
-      const double end = std::min(d.length, begin + branch.longest_panel(begin, smallest_c, floor * d.length));
-      const int n_smooth = internal::n_gauss_points(std::max(branch.ellipse(begin, end), smallest_c), tolerance);
-      const int n = std::max(n_smooth, n_points_along(order, tolerance, (end - begin) / size));
-      internal::integrate_on_panel(std::min(n, max_gauss_points), begin, end,
-                                   [&](const double s, const double weight) { add_element(d, s, weight); });
-      begin = end;
-    }
+    internal::for_each_graded_panel(
+        internal::branch_points(d.start, d.t, medium.a), d.length, tolerance,
+        [&](const double begin, const double end, const int n_smooth)
+        {
+          const int n = std::max(n_smooth, n_points_along(order, tolerance, (end - begin) / size));
+          internal::integrate_on_panel(std::min(n, max_gauss_points), begin, end,
+                                       [&](const double s, const double weight) { add_element(d, s, weight); });
+        });
   }
 
   void add_element(const SegmentImageData &d, const double s, const double weight)

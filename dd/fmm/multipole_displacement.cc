@@ -59,10 +59,6 @@ void MultipoleDisplacement::add_near(const std::size_t leaf)
 std::vector<Vec3> MultipoleDisplacement::displacement(MPI_Comm comm, const Part part)
 {
   compute(comm, part);
-  const std::vector<std::uint32_t> &order_of_points = octree().point_order();
-  std::vector<Vec3> result(order_of_points.size());
-  for (std::size_t k = 0; k < result.size(); ++k)
-    result[order_of_points[k]] = Vec3(value(k, 0), value(k, 1), value(k, 2));
-  return result;
+  return in_given_order<Vec3>();
 }
 } // namespace ddfem::fmm

@@ -1,10 +1,11 @@
 #include "dd/fmm/multipole_images.h"
 
+#include "dd/common/place_key.h"
 #include "dd/elasticity/vectorised/stress_kernels.h"
+#include "dd/fmm/accuracy.h"
 #include "dd/fmm/grids_and_rays.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace ddfem::fmm
@@ -57,12 +58,6 @@ MultipoleSettings settings_of(const MultipoleImages::Field field, MultipoleSetti
     settings.tolerance = std::min(10 * settings.tolerance, 0.1);
   return settings;
 }
-
-/// As MultipoleStress: the first term of the core that is left out is of relative order (a/d)^4.
-double smallest_box(const IsotropicMedium &medium, const double tolerance)
-{
-  return medium.a / 2 / std::pow(tolerance, 0.25);
-}
 } // namespace
 
 MultipoleImages::MultipoleImages(const IsotropicMedium &medium_, const Field which, const MultipoleSettings &given,
@@ -75,7 +70,7 @@ MultipoleImages::MultipoleImages(const IsotropicMedium &medium_, const Field whi
                                  const std::span<const ImageSource> images, const std::span<const SourceExtent> extents,
                                  const std::span<const Vec3> points)
     : MultipoleSum(settings_of(which, given), grid_about_surface(extents, points), extents, points,
-                   smallest_box(medium_, given.tolerance), which == Field::stress ? 6 : 3, n_image_antiderivatives),
+                   smallest_box(medium_.a, given.tolerance), which == Field::stress ? 6 : 3, n_image_antiderivatives),
       medium(medium_), field(which)
 {
   sources.reserve(images.size());
@@ -87,14 +82,10 @@ MultipoleImages::MultipoleImages(const IsotropicMedium &medium_, const Field whi
 
 void MultipoleImages::find_nodes()
 {
-  // Positions closer than this are one node, as for the images themselves, nm.
-  constexpr double same_place = 1e-6;
   std::map<std::array<long long, 3>, std::uint32_t> numbers;
   const auto node_at = [&](const Vec3 &position)
   {
-    const std::array<long long, 3> key{std::llround(position[0] / same_place), std::llround(position[1] / same_place),
-                                       std::llround(position[2] / same_place)};
-    const auto [entry, is_new] = numbers.try_emplace(key, static_cast<std::uint32_t>(nodes.size()));
+    const auto [entry, is_new] = numbers.try_emplace(place_key(position), static_cast<std::uint32_t>(nodes.size()));
     if (is_new)
       nodes.push_back(position);
     return entry->second;
@@ -179,21 +170,12 @@ void MultipoleImages::add_near_stress(const std::span<const std::uint32_t> near,
 std::vector<SymTensor> MultipoleImages::stress(MPI_Comm comm, const Part part)
 {
   compute(comm, part);
-  const std::vector<std::uint32_t> &order_of_points = octree().point_order();
-  std::vector<SymTensor> result(order_of_points.size());
-  for (std::size_t k = 0; k < result.size(); ++k)
-    for (std::size_t c = 0; c < 6; ++c)
-      result[order_of_points[k]][static_cast<int>(c)] = value(k, c);
-  return result;
+  return in_given_order<SymTensor>();
 }
 
 std::vector<Vec3> MultipoleImages::displacement(MPI_Comm comm, const Part part)
 {
   compute(comm, part);
-  const std::vector<std::uint32_t> &order_of_points = octree().point_order();
-  std::vector<Vec3> result(order_of_points.size());
-  for (std::size_t k = 0; k < result.size(); ++k)
-    result[order_of_points[k]] = Vec3(value(k, 0), value(k, 1), value(k, 2));
-  return result;
+  return in_given_order<Vec3>();
 }
 } // namespace ddfem::fmm

@@ -1,9 +1,8 @@
 #include "dd/fmm/multipole_stress.h"
 
 #include "dd/elasticity/vectorised/stress_kernels.h"
+#include "dd/fmm/accuracy.h"
 #include "dd/fmm/grids_and_rays.h"
-
-#include <cmath>
 
 namespace ddfem::fmm
 {
@@ -25,19 +24,13 @@ struct ShiftedBatch
     }
   }
 };
-
-/// The first term of the core that is left out is of relative order (a/d)^4, at distances d of 2 boxes and more.
-double smallest_box(const IsotropicMedium &medium, const double tolerance)
-{
-  return medium.a / 2 / std::pow(tolerance, 0.25);
-}
 } // namespace
 
 MultipoleStress::MultipoleStress(const IsotropicMedium &medium_, const MultipoleSettings &given, const RootGrid &grid,
                                  const std::span<const LineSource> lines, const std::span<const RaySource> distant_rays,
                                  const std::span<const Vec3> points)
-    : MultipoleSum(given, grid, extents_of(lines), points, smallest_box(medium_, given.tolerance), 6), medium(medium_),
-      rays(distant_rays.begin(), distant_rays.end())
+    : MultipoleSum(given, grid, extents_of(lines), points, smallest_box(medium_.a, given.tolerance), 6),
+      medium(medium_), rays(distant_rays.begin(), distant_rays.end())
 {
   sources.reserve(lines.size());
   for (const std::uint32_t i : octree().line_order())
@@ -88,11 +81,6 @@ void MultipoleStress::add_near(const std::size_t leaf)
 std::vector<SymTensor> MultipoleStress::stress(MPI_Comm comm, const Part part)
 {
   compute(comm, part);
-  const std::vector<std::uint32_t> &order_of_points = octree().point_order();
-  std::vector<SymTensor> result(order_of_points.size());
-  for (std::size_t k = 0; k < result.size(); ++k)
-    for (std::size_t c = 0; c < 6; ++c)
-      result[order_of_points[k]][static_cast<int>(c)] = value(k, c);
-  return result;
+  return in_given_order<SymTensor>();
 }
 } // namespace ddfem::fmm

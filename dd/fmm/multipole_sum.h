@@ -79,8 +79,16 @@ protected:
 
   /// Collective: every rank of @p comm computes a share of about equal cost; all get all values.
   void compute(MPI_Comm comm, Part part);
-  /// Of point @p k in the tree's order.
-  double value(std::size_t k, std::size_t component) const { return values[component][k]; }
+  /// Values at the points in the order given.
+  template <class Value> std::vector<Value> in_given_order() const
+  {
+    const std::vector<std::uint32_t> &order = tree.point_order();
+    std::vector<Value> result(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k)
+      for (std::size_t c = 0; c < values.size(); ++c)
+        result[order[k]][static_cast<Eigen::Index>(c)] = values[c][k];
+    return result;
+  }
   double tolerance() const { return settings.tolerance; }
 
   template <std::size_t n> PointBatch<n> batch_of(const Box &box)

@@ -13,9 +13,6 @@ namespace
 {
 constexpr int n_fields = 8;
 
-/// Index of the component ab in xx yy zz xy xz yz.
-constexpr int component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-
 /// Eight lines side by side; missing ones have no strength.
 struct LineBlock
 {
@@ -61,7 +58,7 @@ void add_first_derivatives(const double m, const double factor, const Row (&g)[3
   const auto S = [&](int i, int a, int b)
   {
     constexpr std::size_t field[6] = {3, 4, 0, 5, 6, 7};
-    const int c = component[a][b];
+    const std::size_t c = component[a][b];
     return c == 2 ? -(g[i][3] + g[i][4]) : g[i][field[c]];
   };
   // eps_ima d_i S_mb is the curl over the first index.
@@ -147,7 +144,7 @@ void move_reference_point(const std::size_t n, const Vec3 &shift, const Row *fie
 
 LocalStress::LocalStress(const IsotropicMedium &medium, const int order, const Vec3 &centre_, const double size_,
                          const Row *fields, const double *q)
-    : degree(std::max(order - 1, 0)), centre(centre_), size(size_)
+    : LocalExpansion(std::max(order - 1, 0), centre_, size_)
 {
   const auto &axis = known_gradient_terms(order);
   const std::size_t n = n_harmonics(order);
@@ -161,7 +158,6 @@ LocalStress::LocalStress(const IsotropicMedium &medium, const int order, const V
     potentials(k, 3) = q[k] - core * (first[0](k, 0) + first[1](k, 1) + first[2](k, 2));
 
   const double m = 1 / (1 - medium.nu), scale = medium.mu / (4 * std::numbers::pi * size * size);
-  coefficients = RowBuffer(3 * n_harmonics(degree));
   for (std::size_t k = 0; k < n_harmonics(degree); ++k)
   {
     const Row g[3] = {first[0].rows()[k], first[1].rows()[k], first[2].rows()[k]};
@@ -173,7 +169,7 @@ LocalStress::LocalStress(const IsotropicMedium &medium, const int order, const V
     for (std::size_t b = a; b < 3; ++b)
     {
       const RowBuffer second = derivative(axis[b], slope);
-      const auto c = static_cast<std::size_t>(component[a][b]);
+      const std::size_t c = component[a][b];
       for (std::size_t k = 0; k < n_harmonics(degree); ++k)
       {
         coefficients(3 * k, c) -= m * scale / size * second(k, 3);
@@ -182,10 +178,5 @@ LocalStress::LocalStress(const IsotropicMedium &medium, const int order, const V
       }
     }
   }
-}
-
-void LocalStress::add(const StressBatch &batch) const
-{
-  add_local_expansion(degree, centre, size, coefficients, batch);
 }
 } // namespace ddfem::fmm

@@ -14,6 +14,7 @@
 
 #include "dd/elasticity/point_batch.h"
 #include "dd/elasticity/segment_stress.h"
+#include "dd/fmm/expansion_loops.h"
 #include "dd/fmm/solid_harmonics.h"
 
 #include <span>
@@ -53,20 +54,11 @@ void add_local_of_rays(int order, const Vec3 &centre, double size, std::span<con
 /// Q of a box after a move of x0 by @p shift (nm): @p n coefficients.
 void move_reference_point(std::size_t n, const Vec3 &shift, const Row *fields, const double *q, double *moved_q);
 
-/// The stress in one box from its local coefficients, prepared for evaluation at many points.
-class LocalStress
+/// The stress (MPa) in one box from its local coefficients, prepared for evaluation at many points.
+class LocalStress : public LocalExpansion<6>
 {
 public:
   LocalStress(const IsotropicMedium &medium, int order, const Vec3 &centre, double size, const Row *fields,
               const double *q);
-
-  /// Adds the stress, MPa.
-  void add(const StressBatch &batch) const;
-
-private:
-  int degree; ///< of the expansions of the stress
-  Vec3 centre;
-  double size;
-  RowBuffer coefficients; ///< three rows per harmonic: stress, and the three tensors that are multiplied by y_i
 };
 } // namespace ddfem::fmm

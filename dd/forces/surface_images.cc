@@ -1,5 +1,6 @@
 #include "dd/forces/surface_images.h"
 
+#include "dd/common/place_key.h"
 #include "dd/elasticity/distance.h"
 #include "dd/elasticity/segment_stress.h"
 #include "dd/elasticity/vectorised/displacement_kernels.h"
@@ -15,8 +16,6 @@ namespace ddfem
 {
 namespace
 {
-/// Positions closer than this are one node; far below a core radius, far above rounding, nm.
-constexpr double same_place = 1e-6;
 /// Depth of a node that lies on a face, nm: well above what the projection onto the surface leaves.
 constexpr double on_face = 1e-3;
 /// Points that are evaluated together.
@@ -41,10 +40,7 @@ public:
 
   void add(const Vec3 &x, const Vec3 &b)
   {
-    Key key;
-    for (std::size_t c = 0; c < 3; ++c)
-      key[c] = std::llround(x[static_cast<Eigen::Index>(c)] / same_place);
-    const auto [entry, is_new] = fluxes.try_emplace(key, Flux{x, Vec3::Zero()});
+    const auto [entry, is_new] = fluxes.try_emplace(place_key(x), Flux{x, Vec3::Zero()});
     entry->second.burgers += b;
   }
 
@@ -57,8 +53,7 @@ public:
   }
 
 private:
-  using Key = std::array<long long, 3>;
-  std::map<Key, Flux> fluxes;
+  std::map<std::array<long long, 3>, Flux> fluxes;
 };
 
 SymTensor SurfaceImages::RayTurn::stress(const Vec3 &x) const
