@@ -21,6 +21,7 @@
 #include <ctime>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -199,6 +200,29 @@ Kernel stress_kernel(const bool of_rays)
   return k;
 }
 
+/// The same for points that are not near: in double or in single precision.
+Kernel distant_stress_kernel(const bool single_precision)
+{
+  Kernel k = stress_kernel(false);
+  k.name = single_precision ? "stress of distant segments, single precision" : "stress of distant segments";
+  k.flops = 0;
+  StressBuffer points(1024);
+  std::mt19937 random(4);
+  for (std::size_t i = 0; i < 1024; ++i)
+    points.set_point(i, in_cube(random, 1000));
+  const LineTable table = table_of(random_segments(512, 1000, 30));
+  std::vector<unsigned> all(table.size());
+  std::iota(all.begin(), all.end(), 0U);
+  k.vectorised = [table, all, points, single_precision]() mutable
+  {
+    if (single_precision)
+      add_single_precision_stress(copper, table, all, Vec3::Constant(500), 1000, points.batch());
+    else
+      add_distant_segment_stress(copper, table, all, points.batch());
+  };
+  return k;
+}
+
 /// All four nodal forces of all pairs, with the default tolerance of a run.
 Kernel force_kernel(const std::string &name, const std::vector<Segment> &segments)
 {
@@ -322,6 +346,8 @@ int main()
   }
   std::printf("operations of a stress: segment %ld, ray %ld\n", flops_of_stress(false), flops_of_stress(true));
   report(stress_kernel(false), targets, peaks);
+  report(distant_stress_kernel(false), targets, peaks);
+  report(distant_stress_kernel(true), targets, peaks);
   report(stress_kernel(true), targets, peaks);
   report(force_kernel("forces, 1000 random segments in 1 um", random_segments(1000, 1000, 30)), targets, peaks);
   report(force_kernel("forces, 20 bowed lines of 50 segments", random_lines(20, 50, 1000, 30)), targets, peaks);

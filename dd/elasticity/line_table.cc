@@ -13,6 +13,18 @@ void LineTable::add_ray(const Vec3 &origin, const Vec3 &t, const Vec3 &b)
   add(origin, Vec3::Zero(), t, b, 0.0);
 }
 
+void LineTable::add_moved(const LineTable &table, const std::size_t i, const Vec3 &shift)
+{
+  const std::size_t lane = n_lines % block_size;
+  if (lane == 0)
+    blocks.emplace_back();
+  const double *const from = table.line(i);
+  double *const to = &blocks.back().value[0][lane];
+  for (std::size_t row = 0; row < n_rows; ++row)
+    to[row * block_size] = from[row * block_size] + (row < direction ? shift[static_cast<Eigen::Index>(row % 3)] : 0.0);
+  ++n_lines;
+}
+
 void LineTable::add(const Vec3 &x1, const Vec3 &x2, const Vec3 &t, const Vec3 &b, const double norm)
 {
   const std::size_t lane = n_lines % block_size;

@@ -36,6 +36,9 @@ public:
   /// Ray from @p origin (nm) to infinity along the unit vector @p t.
   void add_ray(const Vec3 &origin, const Vec3 &t, const Vec3 &b);
 
+  /// Line number @p i of @p table, moved by @p shift (nm).
+  void add_moved(const LineTable &table, std::size_t i, const Vec3 &shift);
+
   void reserve(std::size_t n) { blocks.reserve((n + block_size - 1) / block_size); }
   std::size_t size() const { return n_lines; }
   std::size_t n_blocks() const { return blocks.size(); }

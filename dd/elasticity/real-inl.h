@@ -1,6 +1,6 @@
 // Numbers for formulas that are written once: a double, or as many as the processor holds in a vector register.
 //
-// Formulas are templates on the number T = double (scalar reference) or T = Real (vectorised). Highway compiles this file, and
+// Formulas are templates on the number T = double (scalar reference) or T = Real or Single (vectorised). Highway compiles this file, and
 // all other *-inl.h that include it, once for every instruction set, in a namespace of its own, and chooses at run time: hence
 // the guard, which lets a file in once for each of them. Products and sums are contracted by the compiler.
 
@@ -23,144 +23,132 @@ namespace ddfem::HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// At most as many lanes as a block of a LineTable has lines.
-using Lanes = hn::CappedTag<double, LineTable::block_size>;
-using Register = hn::Vec<Lanes>;
-constexpr std::size_t n_register_lanes = hn::MaxLanes(Lanes());
+/// Numbers of type @p Scalar that are computed together: as many bytes as a block of a LineTable has for one row of doubles.
+template <class Scalar> using LanesOf = hn::CappedTag<Scalar, LineTable::block_size * sizeof(double) / sizeof(Scalar)>;
+template <class Scalar> constexpr std::size_t n_register_lanes = hn::MaxLanes(LanesOf<Scalar>());
 /// Narrow registers go in pairs: a formula is one long chain of operations that wait for each other, and two chains fill the
 /// gaps of one.
-constexpr std::size_t n_registers = n_register_lanes < LineTable::block_size ? 2 : 1;
-constexpr std::size_t n_lanes = n_registers * n_register_lanes;
+constexpr std::size_t n_registers = n_register_lanes<double> < LineTable::block_size ? 2 : 1;
+template <class Scalar> constexpr std::size_t n_lanes_of = n_registers *n_register_lanes<Scalar>;
 
-struct Mask
+template <class Scalar> struct Mask
 {
-  hn::Mask<Lanes> m[n_registers];
-};
+  hn::Mask<LanesOf<Scalar>> m[n_registers];
 
-/// A vector of doubles with the arithmetic of one.
-struct Real
-{
-  Register v[n_registers];
-
-  HWY_INLINE Real() : Real(0.0) {}
-  HWY_INLINE Real(const double x)
+  friend HWY_INLINE bool any(const Mask &x)
   {
-    for (Register &r : v)
-      r = hn::Set(Lanes(), x);
-  }
-
-  static HWY_INLINE Real load(const double *const p)
-  {
-    Real x;
+    bool found = false;
     for (std::size_t i = 0; i < n_registers; ++i)
-      x.v[i] = hn::LoadU(Lanes(), p + i * n_register_lanes);
-    return x;
-  }
-  HWY_INLINE void store(double *const p) const
-  {
-    for (std::size_t i = 0; i < n_registers; ++i)
-      hn::StoreU(v[i], Lanes(), p + i * n_register_lanes);
-  }
-
-  HWY_INLINE Real &operator+=(const Real &y)
-  {
-    for (std::size_t i = 0; i < n_registers; ++i)
-      v[i] = hn::Add(v[i], y.v[i]);
-    return *this;
+      found = found || !hn::AllFalse(LanesOf<Scalar>(), x.m[i]);
+    return found;
   }
 };
 
-HWY_INLINE Real operator+(const Real &x, const Real &y)
+/// A vector of numbers with the arithmetic of one.
+template <class Scalar> struct Lanewise
 {
-  Real z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.v[i] = hn::Add(x.v[i], y.v[i]);
-  return z;
-}
-HWY_INLINE Real operator-(const Real &x, const Real &y)
-{
-  Real z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.v[i] = hn::Sub(x.v[i], y.v[i]);
-  return z;
-}
-HWY_INLINE Real operator*(const Real &x, const Real &y)
-{
-  Real z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.v[i] = hn::Mul(x.v[i], y.v[i]);
-  return z;
-}
-HWY_INLINE Real operator/(const Real &x, const Real &y)
-{
-  Real z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.v[i] = hn::Div(x.v[i], y.v[i]);
-  return z;
-}
-HWY_INLINE Real min(const Real &x, const Real &y)
-{
-  Real z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.v[i] = hn::Min(x.v[i], y.v[i]);
-  return z;
-}
-HWY_INLINE Real max(const Real &x, const Real &y)
-{
-  Real z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.v[i] = hn::Max(x.v[i], y.v[i]);
-  return z;
-}
-HWY_INLINE Real operator-(const Real &x)
-{
-  Real z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.v[i] = hn::Neg(x.v[i]);
-  return z;
-}
-HWY_INLINE Real sqrt(const Real &x)
-{
-  Real z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.v[i] = hn::Sqrt(x.v[i]);
-  return z;
-}
-HWY_INLINE Real abs(const Real &x)
-{
-  Real z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.v[i] = hn::Abs(x.v[i]);
-  return z;
-}
-HWY_INLINE Mask operator<(const Real &x, const Real &y)
-{
-  Mask z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.m[i] = hn::Lt(x.v[i], y.v[i]);
-  return z;
-}
-HWY_INLINE Real select(const Mask &condition, const Real &yes, const Real &no)
-{
-  Real z;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    z.v[i] = hn::IfThenElse(condition.m[i], yes.v[i], no.v[i]);
-  return z;
-}
-HWY_INLINE bool any(const Mask &x)
-{
-  bool found = false;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    found = found || !hn::AllFalse(Lanes(), x.m[i]);
-  return found;
-}
-HWY_INLINE double sum_of_lanes(const Real &x)
-{
-  double sum = 0.0;
-  for (std::size_t i = 0; i < n_registers; ++i)
-    sum += hn::GetLane(hn::SumOfLanes(Lanes(), x.v[i]));
-  return sum;
-}
+  using Lanes = LanesOf<Scalar>;
+  static constexpr std::size_t width = n_register_lanes<Scalar>;
+  hn::Vec<Lanes> v[n_registers];
+
+  HWY_INLINE Lanewise() : Lanewise(0.0) {}
+  HWY_INLINE Lanewise(const double x)
+  {
+    for (auto &r : v)
+      r = hn::Set(Lanes(), static_cast<Scalar>(x));
+  }
+
+  /// @p x in every lane.
+  static HWY_INLINE Lanewise all(const Scalar x)
+  {
+    return each([&](std::size_t) HWY_ATTR { return hn::Set(Lanes(), x); });
+  }
+  static HWY_INLINE Lanewise load(const Scalar *const p)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::LoadU(Lanes(), p + i * width); });
+  }
+  HWY_INLINE void store(Scalar *const p) const
+  {
+    for (std::size_t i = 0; i < n_registers; ++i)
+      hn::StoreU(v[i], Lanes(), p + i * width);
+  }
+
+  HWY_INLINE Lanewise &operator+=(const Lanewise &y) { return *this = *this + y; }
+
+  friend HWY_INLINE Lanewise operator+(const Lanewise &x, const Lanewise &y)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::Add(x.v[i], y.v[i]); });
+  }
+  friend HWY_INLINE Lanewise operator-(const Lanewise &x, const Lanewise &y)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::Sub(x.v[i], y.v[i]); });
+  }
+  friend HWY_INLINE Lanewise operator*(const Lanewise &x, const Lanewise &y)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::Mul(x.v[i], y.v[i]); });
+  }
+  friend HWY_INLINE Lanewise operator/(const Lanewise &x, const Lanewise &y)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::Div(x.v[i], y.v[i]); });
+  }
+  friend HWY_INLINE Lanewise operator-(const Lanewise &x)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::Neg(x.v[i]); });
+  }
+  friend HWY_INLINE Lanewise min(const Lanewise &x, const Lanewise &y)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::Min(x.v[i], y.v[i]); });
+  }
+  friend HWY_INLINE Lanewise max(const Lanewise &x, const Lanewise &y)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::Max(x.v[i], y.v[i]); });
+  }
+  friend HWY_INLINE Lanewise sqrt(const Lanewise &x)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::Sqrt(x.v[i]); });
+  }
+  friend HWY_INLINE Lanewise abs(const Lanewise &x)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::Abs(x.v[i]); });
+  }
+  friend HWY_INLINE Mask<Scalar> operator<(const Lanewise &x, const Lanewise &y)
+  {
+    Mask<Scalar> z;
+    for (std::size_t i = 0; i < n_registers; ++i)
+      z.m[i] = hn::Lt(x.v[i], y.v[i]);
+    return z;
+  }
+  friend HWY_INLINE Lanewise select(const Mask<Scalar> &condition, const Lanewise &yes, const Lanewise &no)
+  {
+    return each([&](const std::size_t i) HWY_ATTR { return hn::IfThenElse(condition.m[i], yes.v[i], no.v[i]); });
+  }
+  friend HWY_INLINE double sum_of_lanes(const Lanewise &x)
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < n_registers; ++i)
+      sum += hn::GetLane(hn::SumOfLanes(Lanes(), x.v[i]));
+    return sum;
+  }
+
+private:
+  /// Register by register.
+  template <class Function> static HWY_INLINE Lanewise each(Function &&f)
+  {
+    Lanewise z(Unset{});
+    for (std::size_t i = 0; i < n_registers; ++i)
+      z.v[i] = f(i);
+    return z;
+  }
+  struct Unset
+  {
+  };
+  explicit HWY_INLINE Lanewise(Unset) {}
+};
+
+using Real = Lanewise<double>;
+using Single = Lanewise<float>; ///< twice as many numbers, for fields where seven digits suffice
+using Lanes = LanesOf<double>;
+constexpr std::size_t n_lanes = n_lanes_of<double>;
 
 using std::abs;
 using std::max;

@@ -1,7 +1,7 @@
 // From the requested error to the order of the expansions.
 #pragma once
 
-#include <vector>
+#include "dd/common/types.h"
 
 namespace ddfem::fmm
 {
@@ -9,9 +9,13 @@ namespace ddfem::fmm
 /// unless 1e-8 <= @p tolerance <= 0.1.
 int expansion_order(double tolerance);
 
-/// Order that boxes at @p distance (between centres, in box sizes, at least 2) need for the error that boxes at distance 2
-/// have at @p order.
+/// Order that boxes at @p distance (between centres, in edges of cubes) need for the error that boxes at distance 2 have at
+/// @p order.
 int order_at_distance(int order, double distance);
+
+/// Distance between boxes of given @p edges over the edge of a cube with the same diagonal: what the error depends on. Same unit of
+/// @p shift and @p edges.
+double distance_in_cubes(const Vec3 &shift, const Vec3 &edges);
 
 /// Smallest boxes (nm) whose expansions may leave out the core beyond its second order: of relative order (a/d)^4, at distances d of two
 /// boxes and more.

@@ -162,18 +162,18 @@ void translate(const HalfLineMatrices &matrices, const double *phase, const Row 
   alignas(row_size) Row in[n_cosines(max_order)];
   alignas(row_size) Row out[n_cosines(max_order)];
   alignas(row_size) Row result[n_harmonics(max_order)];
-  turn_to_axis(matrices.source_order, phase, source, turned);
+  turn_to_axis<DoubleRows>(matrices.source_order, phase, source, turned);
   const auto in_order = [](std::size_t k) { return k; };
   for (const int sign : {1, -1})
   {
     for_each_of(matrices.source_order, sign, [&](std::size_t k, std::size_t harmonic) { in[k] = turned[harmonic]; });
     const bool is_cosine = sign > 0;
     const auto size = [is_cosine](int order) { return is_cosine ? n_cosines(order) : n_sines(order); };
-    multiply((is_cosine ? matrices.cosines : matrices.sines).data(), size(matrices.target_order),
-             size(matrices.source_order), in, in_order, out, in_order);
+    multiply<DoubleRows>((is_cosine ? matrices.cosines : matrices.sines).data(), size(matrices.target_order),
+                         size(matrices.source_order), in, in_order, out, in_order);
     for_each_of(matrices.target_order, sign, [&](std::size_t k, std::size_t harmonic) { result[harmonic] = out[k]; });
   }
-  add_turned_back(matrices.target_order, phase, result, target);
+  add_turned_back<DoubleRows>(matrices.target_order, phase, result, target);
 }
 } // namespace
 

@@ -4,6 +4,9 @@
 #include "dd/fmm/accuracy.h"
 #include "dd/fmm/grids_and_rays.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace ddfem::fmm
 {
 namespace
@@ -23,6 +26,43 @@ struct ShiftedBatch
       batch.x[c] = x[c].data();
     }
   }
+};
+
+/// Lines nearer than this to the points of a leaf, in box sizes, are summed in double precision in any case.
+constexpr double single_precision_distance = 0.12;
+
+/// Which lines are so far from all points of a batch that the short form of their stress holds.
+class NearnessToPoints
+{
+public:
+  NearnessToPoints(const StressBatch &batch, const double distance_) : distance(distance_)
+  {
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < batch.n; ++i)
+      {
+        low[c] = std::min(low[c], batch.x[c][i]);
+        high[c] = std::max(high[c], batch.x[c][i]);
+      }
+  }
+
+  /// Of a line in sphere number @p k, moved by @p shift (nm).
+  bool is_distant(const LineSpheres &s, const std::size_t k, const Vec3 &shift) const
+  {
+    const double x[3] = {s.x[k] + shift[0], s.y[k] + shift[1], s.z[k] + shift[2]};
+    double square = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const double outside = std::max({low[c] - x[c], x[c] - high[c], 0.0});
+      square += outside * outside;
+    }
+    const double needed = s.radius[k] + std::max(distance, s.radius[k]);
+    return square > needed * needed;
+  }
+
+private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  double distance; ///< nm
+  double low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
 };
 } // namespace
 
@@ -50,8 +90,7 @@ void MultipoleStress::add_own_moments(const Box &box, const ExpansionView &momen
 
 void MultipoleStress::add_distant(const Box &box, const ExpansionView &expansion) const
 {
-  if (box.level == level_of_distant_rays)
-    add_local_of_rays(order(), octree().centre(box), octree().size(box), rays, expansion);
+  add_local_of_rays(order(), octree().centre(box), octree().size(box), rays, expansion);
 }
 
 void MultipoleStress::add_far(const Box &leaf, const Row *const fields, const double *const q)
@@ -62,20 +101,40 @@ void MultipoleStress::add_far(const Box &leaf, const Row *const fields, const do
 void MultipoleStress::add_near(const std::size_t leaf)
 {
   const Octree &boxes = octree();
-  std::vector<std::vector<unsigned>> near(boxes.image_shifts().size()); // by image
-  boxes.for_each_near_link(leaf,
-                           [&](const NearLink &link, const std::uint32_t begin, const std::uint32_t end)
-                           {
-                             for (std::uint32_t k = begin; k < end; ++k)
-                               near[link.image].push_back(k);
-                           });
-  const StressBatch batch = batch_of<6>(boxes.boxes()[leaf]);
-  add_segment_stress(medium, line_table, near[0], batch);
-  for (std::size_t image = 1; image < near.size(); ++image)
-    if (!near[image].empty())
-      add_segment_stress(medium, line_table, near[image], ShiftedBatch(batch, -boxes.image_shifts()[image]).batch);
-  if (boxes.boxes()[leaf].level < level_of_distant_rays)
+  const Box &box = boxes.boxes()[leaf];
+  const StressBatch batch = batch_of<6>(box);
+  const NearnessToPoints nearness(batch, single_precision() ? single_precision_distance * boxes.size(box) : 0.0);
+  struct Lines
+  {
+    std::vector<unsigned> near, distant;
+  };
+  std::vector<Lines> of_image(boxes.image_shifts().size());
+  boxes.for_each_near_link(
+      leaf,
+      [&](const NearLink &link, const std::uint32_t begin, const std::uint32_t end)
+      {
+        Lines &lines = of_image[link.image];
+        for (std::uint32_t k = begin; k < end; ++k)
+          (nearness.is_distant(boxes.line_spheres(), k, boxes.image_shifts()[link.image]) ? lines.distant : lines.near)
+              .push_back(k);
+      });
+  for (std::size_t image = 0; image < of_image.size(); ++image)
+    if (const Lines &lines = of_image[image]; !lines.near.empty() || !lines.distant.empty())
+      add_near_lines(lines.near, lines.distant, box,
+                     image == 0 ? batch : ShiftedBatch(batch, -boxes.image_shifts()[image]).batch,
+                     boxes.image_shifts()[image]);
+  if (box.level < level_of_distant_rays)
     add_ray_stress(medium, ray_table, batch);
+}
+
+void MultipoleStress::add_near_lines(const std::span<const unsigned> near, const std::span<const unsigned> distant,
+                                     const Box &box, const StressBatch &batch, const Vec3 &shift) const
+{
+  add_segment_stress(medium, line_table, near, batch);
+  if (single_precision())
+    add_single_precision_stress(medium, line_table, distant, octree().centre(box) - shift, octree().size(box), batch);
+  else
+    add_distant_segment_stress(medium, line_table, distant, batch);
 }
 
 std::vector<SymTensor> MultipoleStress::stress(MPI_Comm comm, const Part part)

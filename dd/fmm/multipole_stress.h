@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dd/elasticity/line_table.h"
+#include "dd/fmm/grids_and_rays.h"
 #include "dd/fmm/multipole_sum.h"
 
 #include <vector>
@@ -22,12 +23,17 @@ public:
 
   /// The lines in the order of the tree.
   const std::vector<LineSource> &lines() const { return sources; }
+  const LineTable &table() const { return line_table; }
 
 private:
   void add_own_moments(const Box &box, const ExpansionView &moments) const override;
+  int distant_level() const override { return rays.empty() ? -1 : level_of_distant_rays; }
   void add_distant(const Box &box, const ExpansionView &local) const override;
   void add_far(const Box &leaf, const Row *fields, const double *q) override;
   void add_near(std::size_t leaf) override;
+  /// Stress of lines by their numbers in the tree's order, moved by @p shift (nm), at points of @p box moved back by it.
+  void add_near_lines(std::span<const unsigned> near, std::span<const unsigned> distant, const Box &box,
+                      const StressBatch &batch, const Vec3 &shift) const;
 
   IsotropicMedium medium;
   std::vector<LineSource> sources; ///< in the tree's order

@@ -1,33 +1,17 @@
 // Fields of many sources at many points by a fast multipole method: what stress and displacement share.
 #pragma once
 
-#include "dd/fmm/half_line_translation.h"
+#include "dd/fmm/far_passes.h"
 #include "dd/fmm/octree.h"
-#include "dd/fmm/translation.h"
 
 #include <mpi.h>
 
 #include <array>
-#include <tuple>
+#include <memory>
 #include <vector>
 
 namespace ddfem::fmm
 {
-/// Multipole or local coefficients of all boxes: eight fields and Q, see ExpansionView.
-class Expansions
-{
-public:
-  Expansions(std::size_t n_boxes, int order) : n(n_harmonics(order)), fields_(n_boxes * n), q_(n_boxes * n, 0.0) {}
-  ExpansionView of(std::size_t box) { return {fields_.rows() + box * n, q_.data() + box * n}; }
-  const Row *fields(std::size_t box) const { return fields_.rows() + box * n; }
-  const double *q(std::size_t box) const { return q_.data() + box * n; }
-
-private:
-  std::size_t n;
-  RowBuffer fields_;
-  std::vector<double> q_;
-};
-
 /// Processor time of the phases on this rank, summed over its threads, s.
 struct PhaseTimes
 {
@@ -43,6 +27,9 @@ struct MultipoleSettings
   /// Factor to the assumed cost of a translation: smaller for a deeper tree.
   double translation_cost_factor = 1.0;
 };
+
+/// Requested error from which on single precision suffices for what is not near.
+inline constexpr double single_precision_from = 1e-5;
 
 /// What to sum: all of it, or one part, for tests and measurements.
 enum class Part : std::uint8_t
@@ -90,6 +77,8 @@ protected:
     return result;
   }
   double tolerance() const { return settings.tolerance; }
+  /// Whether distant lines and expansions are computed in single precision.
+  bool single_precision() const { return settings.tolerance >= single_precision_from; }
 
   template <std::size_t n> PointBatch<n> batch_of(const Box &box)
   {
@@ -104,50 +93,29 @@ protected:
 private:
   /// Adds the moments of the sources that @p box holds itself.
   virtual void add_own_moments(const Box &box, const ExpansionView &moments) const = 0;
-  /// Adds sources at infinity to the local expansion of @p box.
+  /// Level of the boxes to which sources at infinity are added; -1: none.
+  virtual int distant_level() const { return -1; }
+  /// Adds them to the local expansion of @p box.
   virtual void add_distant(const Box & /*box*/, const ExpansionView & /*local*/) const {}
   /// Adds a local expansion at the points of a leaf.
   virtual void add_far(const Box &leaf, const Row *fields, const double *q) = 0;
   /// Adds what acts directly on the points of leaf number @p leaf.
   virtual void add_near(std::size_t leaf) = 0;
 
-  struct Task
-  {
-    std::uint32_t translation, target, source;
-    bool operator<(const Task &o) const
-    {
-      return std::tie(translation, target, source) < std::tie(o.translation, o.target, o.source);
-    }
-  };
-
-  void make_translations(const RootGrid &grid);
-  void add_far_translation(const Vec3 &shift);
-  std::uint32_t far_translation(const std::array<std::int16_t, 3> &offset) const;
-
   void choose_share(MPI_Comm comm);
   double work(std::size_t leaf) const;
-  void compute_moments();
-  void moments_of(std::size_t box);
-  void translate_far();
-  void translate_chunk(std::uint32_t begin, std::uint32_t end);
-  void add_far(const Translation &translation, std::span<const Task> tasks);
-  void add_far_q(const Translation &translation, std::span<const Task> tasks);
-  void add_far_integrals(const HalfLineTranslation &translation, std::span<const Task> tasks);
-  void pass_down();
-  void pass_down_to(std::size_t box);
+  void far_passes();
+  void add_far_of(std::size_t leaf);
   void gather(MPI_Comm comm);
 
   MultipoleSettings settings;
   int n_antiderivatives;
+  int order_of_cubes; ///< see ExpansionOrders
   int expansion_order_;
   Octree tree;
   std::array<std::vector<double>, 3> x;    ///< points in the tree's order
   std::vector<std::vector<double>> values; ///< component by component, in the tree's order
-  std::vector<Translation> far, to_parent, to_child;
-  std::vector<HalfLineTranslation> far_integrals; ///< instead of far
-  int largest_offset = 3;
-  std::vector<std::uint32_t> far_number; ///< translation by offset, a cube
-  Expansions multipole, local;
+  std::unique_ptr<FarPasses> passes;
   std::vector<std::uint32_t> leaves;         ///< with points, in the order of their points
   std::vector<std::size_t> share;            ///< first leaf of each rank
   std::size_t first_leaf = 0, last_leaf = 0; ///< of this rank

@@ -37,7 +37,25 @@ int octant(const Vec3 &x, const Vec3 &centre)
 {
   return (x[0] >= centre[0] ? 1 : 0) + (x[1] >= centre[1] ? 2 : 0) + (x[2] >= centre[2] ? 4 : 0);
 }
+
+DDFEM_FMM_EVERY_PROCESSOR
+void find_near(const double *x, const double *y, const double *z, const double *radius, const Vec3 &centre,
+               const double reach, const std::size_t n, std::uint8_t *near)
+{
+  const double cx = centre[0], cy = centre[1], cz = centre[2];
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const double dx = x[i] - cx, dy = y[i] - cy, dz = z[i] - cz, sum = reach + radius[i];
+    near[i] = dx * dx + dy * dy + dz * dz < sum * sum ? 1 : 0;
+  }
+}
 } // namespace
+
+void LineSpheres::find(const Vec3 &centre, const double reach, const std::size_t begin, const std::size_t n,
+                       std::uint8_t *near) const
+{
+  find_near(x.data() + begin, y.data() + begin, z.data() + begin, radius.data() + begin, centre, reach, n, near);
+}
 
 std::vector<SourceExtent> extents_of(const std::span<const LineSource> lines)
 {
@@ -60,6 +78,8 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
         const int i = k / 9 - 1, j = k / 3 % 3 - 1, l = k % 3 - 1;
         shifts.emplace_back(period.cwiseProduct(Vec3(i, j, l)));
       }
+  for (int level = 0; level <= deepest_level; ++level)
+    edges_of_level.emplace_back(std::ldexp(1.0, -level) * grid.edges);
   sort_into_roots(sources, points);
   Neighbours neighbours(all.size());
   pair_roots(neighbours);
@@ -80,7 +100,14 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
   }
   level_begin.pop_back(); // the last level is empty
   for (const std::uint32_t i : line_at)
-    spheres.push_back({line_middle[i][0], line_middle[i][1], line_middle[i][2], 0.5 * line_length[i]});
+  {
+    spheres.x.push_back(line_middle[i][0]);
+    spheres.y.push_back(line_middle[i][1]);
+    spheres.z.push_back(line_middle[i][2]);
+    spheres.radius.push_back(0.5 * line_length[i]);
+  }
+  for (const Box &box : all)
+    centres.push_back(centre(box));
 }
 
 void Octree::sort_into_roots(const std::span<const SourceExtent> sources, const std::span<const Vec3> points)
@@ -236,16 +263,6 @@ void Octree::pair_children(const std::size_t box, const std::vector<Neighbour> &
         pair(target, link, neighbours);
       }
   }
-}
-
-Vec3 Octree::edges(const Box &box) const
-{
-  return std::ldexp(1.0, -box.level) * grid.edges;
-}
-
-double Octree::size(const Box &box) const
-{
-  return edges(box).maxCoeff();
 }
 
 Vec3 Octree::centre(const Box &box) const

@@ -3,7 +3,9 @@
 
 #include "dd/fmm/stress_expansion.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -58,6 +60,15 @@ struct FarLink
   std::array<std::int16_t, 3> offset;
 };
 
+/// Around lines, nm.
+struct LineSpheres
+{
+  std::vector<double> x, y, z, radius;
+
+  /// Sets near[i] to whether sphere number @p begin + i touches the one of @p reach (nm) around @p centre, for i < @p n.
+  void find(const Vec3 &centre, double reach, std::size_t begin, std::size_t n, std::uint8_t *near) const;
+};
+
 /// What decides how far boxes are divided and which pairs use expansions.
 struct TreeSettings
 {
@@ -85,9 +96,13 @@ public:
   const std::vector<std::uint32_t> &line_order() const { return line_at; }
   const std::vector<std::uint32_t> &point_order() const { return point_at; }
 
+  /// In the tree's order.
+  const LineSpheres &line_spheres() const { return spheres; }
+
   Vec3 centre(const Box &box) const; ///< nm
-  Vec3 edges(const Box &box) const;  ///< nm
-  double size(const Box &box) const; ///< longest edge, nm
+  /// nm
+  const Vec3 &edges(const Box &box) const { return edges_of_level[box.level]; }
+  double size(const Box &box) const { return edges(box).maxCoeff(); } ///< longest edge, nm
   /// Translations of the images, nm; the first is zero.
   const std::vector<Vec3> &image_shifts() const { return shifts; }
 
@@ -121,6 +136,7 @@ private:
 
   RootGrid grid;
   TreeSettings settings;
+  std::vector<Vec3> edges_of_level; ///< nm
   std::vector<Box> all;
   std::vector<std::uint32_t> level_begin;
   std::vector<std::vector<NearLink>> near;
@@ -129,12 +145,8 @@ private:
   std::vector<Vec3> line_middle, point; ///< as given
   std::vector<double> line_length;      ///< as given
   std::vector<Vec3> shifts;
-  /// Around each line, in the tree's order, nm.
-  struct LineSphere
-  {
-    double x, y, z, radius;
-  };
-  std::vector<LineSphere> spheres;
+  LineSpheres spheres;
+  std::vector<Vec3> centres; ///< of the boxes, nm
   double longest_of_all = 0; ///< line, nm
 };
 
@@ -165,16 +177,25 @@ void Octree::visit_lines(const Box &box, const Vec3 &x, const double radius, con
 {
   // Lines that leaves of level 0 hold may be of any length.
   const double overhang = box.level == 0 ? longest_of_all : settings.longest_line * size(box);
-  const Vec3 outside = ((x - centre(box)).cwiseAbs() - 0.5 * edges(box)).cwiseMax(0.0);
+  const Vec3 &centre_of_box = centres[static_cast<std::size_t>(&box - all.data())], &whole = edges(box);
   const double reach = radius + 0.5 * overhang;
-  if (box.n_lines() == 0 || outside.squaredNorm() > reach * reach)
-    return;
-  for (std::uint32_t k = box.lines_begin; k < box.own_lines_end; ++k)
+  double outside2 = 0;
+  for (Eigen::Index c = 0; c < 3; ++c)
   {
-    const LineSphere &s = spheres[k];
-    const double dx = x[0] - s.x, dy = x[1] - s.y, dz = x[2] - s.z, sum = radius + s.radius;
-    if (dx * dx + dy * dy + dz * dz < sum * sum)
-      visit(k, image);
+    const double outside = std::max(std::abs(x[c] - centre_of_box[c]) - 0.5 * whole[c], 0.0);
+    outside2 += outside * outside;
+  }
+  if (box.n_lines() == 0 || outside2 > reach * reach)
+    return;
+  constexpr std::uint32_t at_once = 64;
+  std::uint8_t near_line[at_once];
+  for (std::uint32_t begin = box.lines_begin; begin < box.own_lines_end; begin += at_once)
+  {
+    const std::uint32_t n = std::min(at_once, box.own_lines_end - begin);
+    spheres.find(x, radius, begin, n, near_line);
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (near_line[i] != 0)
+        visit(begin + i, image);
   }
   for (std::uint32_t i = 0; i < box.n_children; ++i)
     visit_lines(all[box.first_child + i], x, radius, image, visit);

@@ -10,7 +10,15 @@ namespace ddfem::fmm
 {
 namespace
 {
-using Blocks = std::shared_ptr<const std::vector<double>>;
+template <class Scalar> using Blocks = std::shared_ptr<const std::vector<Scalar>>;
+
+template <class Scalar> std::vector<Scalar> in_precision(const std::vector<double> &numbers)
+{
+  std::vector<Scalar> result;
+  for (const double x : numbers)
+    result.push_back(static_cast<Scalar>(x));
+  return result;
+}
 
 /// Transposes every block of rotation_about_y().
 std::vector<double> transposed(const int order, const std::vector<double> &blocks)
@@ -31,9 +39,10 @@ std::vector<double> transposed(const int order, const std::vector<double> &block
 }
 
 /// Both directions of a rotation; few angles occur, and all are kept. They are numbers of the angle and the order alone.
-std::pair<Blocks, Blocks> rotation_pair(const int order, const double cos_theta, const double sin_theta)
+template <class Scalar>
+std::pair<Blocks<Scalar>, Blocks<Scalar>> rotation_pair(const int order, const double cos_theta, const double sin_theta)
 {
-  static std::map<std::pair<int, long>, std::pair<Blocks, Blocks>> known;
+  static std::map<std::pair<int, long>, std::pair<Blocks<Scalar>, Blocks<Scalar>>> known;
   static std::mutex access;
   const std::lock_guard lock(access);
   // Angles that differ by rounding share an entry; the first one is as good as the others.
@@ -41,8 +50,8 @@ std::pair<Blocks, Blocks> rotation_pair(const int order, const double cos_theta,
   if (!entry.first)
   {
     const auto blocks = rotation_about_y(order, cos_theta, sin_theta);
-    entry = {std::make_shared<const std::vector<double>>(blocks),
-             std::make_shared<const std::vector<double>>(transposed(order, blocks))};
+    entry = {std::make_shared<const std::vector<Scalar>>(in_precision<Scalar>(blocks)),
+             std::make_shared<const std::vector<Scalar>>(in_precision<Scalar>(transposed(order, blocks)))};
   }
   return entry;
 }
@@ -126,22 +135,31 @@ const std::uint16_t *axial_order(const int order)
   return all[static_cast<std::size_t>(order)].of_harmonic.data();
 }
 
-DDFEM_FMM_EVERY_PROCESSOR
-void translate(const int order, const double *phase, const double *rotation, const double *axial,
-               const double *backward, const std::uint16_t *axial_place, const Row *source, Row *target)
+/// The numbers of one translation.
+template <class Scalar> struct Factors
 {
-  alignas(row_size) Row a[n_harmonics(max_order)];
-  alignas(row_size) Row b[n_harmonics(max_order)];
-  turn_to_axis(order, phase, source, a);
+  int order;
+  const Scalar *phase, *rotation, *axial, *backward;
+  const std::uint16_t *axial_place;
+};
+
+template <class Rows>
+DDFEM_FMM_INLINE void translate_rows(const Factors<typename Rows::Scalar> &factors, const typename Rows::Row *source,
+                                     typename Rows::Row *target)
+{
+  auto [order, phase, rotation, axial, backward, axial_place] = factors;
+  alignas(row_size) typename Rows::Row a[n_harmonics(max_order)];
+  alignas(row_size) typename Rows::Row b[n_harmonics(max_order)];
+  turn_to_axis<Rows>(order, phase, source, a);
   for (int l = 0; l <= order; ++l)
   {
     const std::size_t zero = harmonic_index(l, 0);
     const auto n = static_cast<std::size_t>(l);
-    multiply(
+    multiply<Rows>(
         rotation, n + 1, n + 1, a, [zero](std::size_t j) { return zero + j; }, b,
         [zero, axial_place](std::size_t i) { return std::size_t{axial_place[zero + i]}; });
     rotation += (n + 1) * (n + 1);
-    multiply(
+    multiply<Rows>(
         rotation, n, n, a, [zero](std::size_t j) { return zero - 1 - j; }, b,
         [zero, axial_place](std::size_t i) { return std::size_t{axial_place[zero - 1 - i]}; });
     rotation += n * n;
@@ -153,7 +171,7 @@ void translate(const int order, const double *phase, const double *rotation, con
     for (int part = 0; part < (m == 0 ? 1 : 2); ++part, begin += n)
     {
       const auto place = [begin](std::size_t j) { return begin + j; };
-      multiply(axial, n, n, b, place, a, place);
+      multiply<Rows>(axial, n, n, b, place, a, place);
     }
     axial += n * n;
   }
@@ -161,40 +179,113 @@ void translate(const int order, const double *phase, const double *rotation, con
   {
     const std::size_t zero = harmonic_index(l, 0);
     const auto n = static_cast<std::size_t>(l);
-    multiply(
+    multiply<Rows>(
         backward, n + 1, n + 1, a, [zero, axial_place](std::size_t j) { return std::size_t{axial_place[zero + j]}; }, b,
         [zero](std::size_t i) { return zero + i; });
     backward += (n + 1) * (n + 1);
-    multiply(
+    multiply<Rows>(
         backward, n, n, a, [zero, axial_place](std::size_t j) { return std::size_t{axial_place[zero - 1 - j]}; }, b,
         [zero](std::size_t i) { return zero - 1 - i; });
     backward += n * n;
   }
-  add_turned_back(order, phase, b, target);
+  add_turned_back<Rows>(order, phase, b, target);
+}
+
+DDFEM_FMM_EVERY_PROCESSOR
+void translate(const Factors<double> &factors, const Row *source, Row *target)
+{
+  translate_rows<DoubleRows>(factors, source, target);
+}
+
+DDFEM_FMM_EVERY_PROCESSOR
+void translate(const Factors<float> &factors, const SingleRows::Row *source, SingleRows::Row *target)
+{
+  translate_rows<SingleRows>(factors, source, target);
+}
+
+DDFEM_FMM_EVERY_PROCESSOR
+void translate(const Factors<float> &factors, const WideSingleRows::Row *source, WideSingleRows::Row *target)
+{
+  translate_rows<WideSingleRows>(factors, source, target);
+}
+
+template <class Scalar>
+Factors<Scalar> factors_of(const int order, const std::vector<Scalar> &phase, const std::vector<Scalar> &rotation,
+                           const std::vector<Scalar> &axial, const std::vector<Scalar> &backward)
+{
+  return {order, phase.data(), rotation.data(), axial.data(), backward.data(), axial_order(order)};
+}
+
+/// Two expansions side by side.
+DDFEM_FMM_EVERY_PROCESSOR
+void translate_two(const Factors<float> &factors, const SingleRows::Row *const *source, SingleRows::Row *const *target)
+{
+  alignas(row_size) WideSingleRows::Row in[n_harmonics(max_order)];
+  alignas(row_size) WideSingleRows::Row out[n_harmonics(max_order)];
+  const std::size_t n = n_harmonics(factors.order);
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    const SingleRows::Row first = source[0][k], second = source[1][k];
+    in[k] = __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    out[k] = WideSingleRows::Row{};
+  }
+  translate_rows<WideSingleRows>(factors, in, out);
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    const WideSingleRows::Row both = out[k];
+    target[0][k] += __builtin_shufflevector(both, both, 0, 1, 2, 3, 4, 5, 6, 7);
+    target[1][k] += __builtin_shufflevector(both, both, 8, 9, 10, 11, 12, 13, 14, 15);
+  }
+}
+
+void translate_two(const Factors<double> &factors, const Row *const *source, Row *const *target)
+{
+  translate(factors, source[0], target[0]);
+  translate(factors, source[1], target[1]);
 }
 } // namespace
 
-Translation::Translation(const Shift kind, const int order, const Vec3 &vector) : order_(order), vector_(vector)
+template <class Scalar>
+BasicTranslation<Scalar>::BasicTranslation(const Shift kind, const int order, const Vec3 &vector)
+    : order_(order), vector_(vector)
 {
   const double d = vector.norm(), phi = std::atan2(vector[1], vector[0]);
   for (int m = 0; m <= order; ++m)
   {
-    phase.push_back(std::cos(m * phi));
-    phase.push_back(std::sin(m * phi));
+    phase.push_back(static_cast<Scalar>(std::cos(m * phi)));
+    phase.push_back(static_cast<Scalar>(std::sin(m * phi)));
   }
-  std::tie(rotation, backward) = rotation_pair(order, vector[2] / d, std::hypot(vector[0], vector[1]) / d);
+  std::tie(rotation, backward) = rotation_pair<Scalar>(order, vector[2] / d, std::hypot(vector[0], vector[1]) / d);
   std::vector<double> power{1.0};
   for (int n = 0; n <= 2 * order; ++n)
     power.push_back(power.back() * (kind == Shift::far ? 1 / d : d));
   for (int m = 0; m <= order; ++m)
     for (int to = m; to <= order; ++to)
       for (int from = m; from <= order; ++from)
-        axial.push_back(axial_element(kind, m, to, from, power));
+        axial.push_back(static_cast<Scalar>(axial_element(kind, m, to, from, power)));
 }
 
-void Translation::add(const Row *source, Row *target) const
+template <class Scalar>
+void BasicTranslation<Scalar>::add(const typename Precision<Scalar>::Narrow::Row *source,
+                                   typename Precision<Scalar>::Narrow::Row *target) const
 {
-  translate(order_, phase.data(), rotation->data(), axial.data(), backward->data(), axial_order(order_), source,
-            target);
+  translate(factors_of(order_, phase, *rotation, axial, *backward), source, target);
 }
+
+template <class Scalar>
+void BasicTranslation<Scalar>::add_two(const std::array<const typename Precision<Scalar>::Narrow::Row *, 2> &source,
+                                       const std::array<typename Precision<Scalar>::Narrow::Row *, 2> &target) const
+{
+  translate_two(factors_of(order_, phase, *rotation, axial, *backward), source.data(), target.data());
+}
+
+template <class Scalar>
+void BasicTranslation<Scalar>::add_wide(const typename Precision<Scalar>::Wide::Row *source,
+                                        typename Precision<Scalar>::Wide::Row *target) const
+{
+  translate(factors_of(order_, phase, *rotation, axial, *backward), source, target);
+}
+
+template class BasicTranslation<double>;
+template class BasicTranslation<float>;
 } // namespace ddfem::fmm

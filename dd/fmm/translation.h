@@ -9,6 +9,7 @@
 #include "dd/common/types.h"
 #include "dd/fmm/solid_harmonics.h"
 
+#include <array>
 #include <map>
 #include <memory>
 #include <vector>
@@ -22,15 +23,22 @@ enum class Shift : std::uint8_t
   parent_to_child, ///< local to local; vector: child - parent centre
 };
 
-/// One translation; @p vector in units of the (parent) box size.
-class Translation
+/// One translation; @p vector in units of the (parent) box size. Scalar: double or float.
+template <class Scalar> class BasicTranslation
 {
 public:
-  Translation(Shift kind, int order, const Vec3 &vector);
+  BasicTranslation(Shift kind, int order, const Vec3 &vector);
 
   /// Adds the translated expansions to @p target. @p source and @p target hold n_harmonics(order) rows: eight expansions side by
   /// side. Different source and target; safe to call from any thread.
-  void add(const Row *source, Row *target) const;
+  void add(const typename Precision<Scalar>::Narrow::Row *source,
+           typename Precision<Scalar>::Narrow::Row *target) const;
+  /// The same of two.
+  void add_two(const std::array<const typename Precision<Scalar>::Narrow::Row *, 2> &source,
+               const std::array<typename Precision<Scalar>::Narrow::Row *, 2> &target) const;
+  /// The same of as many expansions as a wide row holds.
+  void add_wide(const typename Precision<Scalar>::Wide::Row *source,
+                typename Precision<Scalar>::Wide::Row *target) const;
 
   int order() const { return order_; }
   const Vec3 &vector() const { return vector_; } ///< in units of the box size
@@ -38,8 +46,9 @@ public:
 private:
   int order_;
   Vec3 vector_;
-  std::vector<double> phase;                                     ///< cos(m phi), sin(m phi)
-  std::shared_ptr<const std::vector<double>> rotation, backward; ///< to the axis and (transposed) back
-  std::vector<double> axial;                                     ///< one square matrix for every m >= 0
+  std::vector<Scalar> phase;                                     ///< cos(m phi), sin(m phi)
+  std::shared_ptr<const std::vector<Scalar>> rotation, backward; ///< to the axis and (transposed) back
+  std::vector<Scalar> axial;                                     ///< one square matrix for every m >= 0
 };
+using Translation = BasicTranslation<double>;
 } // namespace ddfem::fmm

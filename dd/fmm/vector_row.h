@@ -19,9 +19,38 @@ namespace ddfem::fmm
 inline constexpr std::size_t row_width = 8;
 inline constexpr std::size_t row_size = row_width * sizeof(double);
 
-/// A vector of the compiler (GCC, Clang). Passed by pointer or reference only, since the calling convention depends on the
+/// Vectors of the compiler (GCC, Clang). Passed by pointer or reference only, since the calling convention depends on the
 /// processor; so does the natural alignment, which is therefore not relied on (but provided, for speed).
-using Row = double __attribute__((vector_size(row_size), aligned(sizeof(double)), may_alias));
+struct DoubleRows
+{
+  using Scalar = double;
+  using Row = double __attribute__((vector_size(row_size), aligned(sizeof(double)), may_alias));
+};
+struct SingleRows
+{
+  using Scalar = float;
+  using Row = float __attribute__((vector_size(row_size / 2), aligned(sizeof(float)), may_alias));
+};
+/// Two SingleRows side by side.
+struct WideSingleRows
+{
+  using Scalar = float;
+  using Row = float __attribute__((vector_size(row_size), aligned(sizeof(float)), may_alias));
+};
+using Row = DoubleRows::Row;
+
+/// What is computed with numbers of one type: `Narrow` rows hold one expansion each of eight fields, `Wide` ones fill row_size bytes.
+template <class Scalar> struct Precision;
+template <> struct Precision<double>
+{
+  using Narrow = DoubleRows;
+  using Wide = DoubleRows;
+};
+template <> struct Precision<float>
+{
+  using Narrow = SingleRows;
+  using Wide = WideSingleRows;
+};
 
 template <class T> struct RowAllocator
 {

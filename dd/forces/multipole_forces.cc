@@ -11,11 +11,11 @@ namespace ddfem
 {
 namespace
 {
-/// Sources nearer than this many half lengths of a panel are replaced, approximately; the number of Gauss points follows.
-constexpr double typical_near_distance = 4.5;
+/// Sources nearer than this many half lengths to the middle of a panel are replaced, approximately; the number of Gauss points follows.
+constexpr double typical_near_distance = 5.5;
 /// The error of quadrature is relative to the sources near the panel, which are some five times the far field; the rest is
 /// margin for the errors of several sources of one panel.
-constexpr double near_to_far = 7;
+constexpr double near_to_far = 14;
 
 double bernstein_radius(const double distance)
 {
@@ -28,11 +28,11 @@ int n_points_for(const double tolerance)
                          -0.5 * std::log(tolerance) / std::log(bernstein_radius(typical_near_distance)) - 0.05)));
 }
 
-/// Distance, in half lengths, from which @p n points reach the tolerance.
+/// Distance from the middle, in half lengths, from which @p n points reach the tolerance: the larger axis of the ellipse.
 double near_distance_for(const double tolerance, const int n)
 {
   const double rho = std::pow(tolerance, -0.5 / n);
-  return 0.5 * (rho - 1 / rho);
+  return 0.5 * (rho + 1 / rho);
 }
 
 SegmentForces &operator+=(SegmentForces &f, const SegmentForces &g)
@@ -114,23 +114,26 @@ SegmentForces MultipoleForces::panel_force(const std::size_t i, const Panel &pan
 MultipoleForces::NearSources MultipoleForces::near_sources(const std::size_t i, const Vec3 &start,
                                                            const Vec3 &end) const
 {
-  const fmm::Octree &tree = multipoles->sum().octree();
+  const fmm::MultipoleStress &sum = multipoles->sum();
+  const fmm::Octree &tree = sum.octree();
   const Vec3 middle = 0.5 * (start + end);
   const double half = 0.5 * (end - start).norm(), reach = near_distance * half;
   NearSources near;
-  tree.for_each_line_near(
-      middle, reach + half,
-      [&](const std::uint32_t k, const std::size_t image)
-      {
-        const fmm::LineSource &source = multipoles->sum().lines()[k];
-        const Vec3 x1 = source.start + tree.image_shifts()[image], x2 = source.end + tree.image_shifts()[image];
-        if (distance_segment_segment(x1, x2, start, end).squared > reach * reach)
-          return;
-        // Of the images of the line itself, the one that the panel lies on.
-        if (tree.line_order()[k] == i && distance_point_segment(middle, x1, x2).squared < 1e-12 * half * half)
-          near.itself = near.table.size();
-        near.table.add_segment(x1, x2, source.burgers);
-      });
+  near.table.reserve(4 * LineTable::block_size); // most panels have fewer
+  tree.for_each_line_near(middle, reach,
+                          [&](const std::uint32_t k, const std::size_t image)
+                          {
+                            const fmm::LineSource &source = sum.lines()[k];
+                            const Vec3 &shift = tree.image_shifts()[image];
+                            const double squared =
+                                distance_point_segment(middle, source.start + shift, source.end + shift).squared;
+                            if (squared > reach * reach)
+                              return;
+                            // Of the images of the line itself, the one that the panel lies on.
+                            if (tree.line_order()[k] == i && squared < 1e-12 * half * half)
+                              near.itself = near.table.size();
+                            near.table.add_moved(sum.table(), k, shift);
+                          });
   return near;
 }
 
@@ -142,16 +145,12 @@ void MultipoleForces::replace_near(const std::size_t i, const Panel &panel, Segm
   const Vec3 start = line.start + shift + panel.begin * t, end = line.start + shift + panel.end * t;
   const NearSources near = near_sources(i, start, end);
   // What the sources have added at the Gauss points, and what they should have added.
-  const GaussRule rule = gauss_rule(n_gauss);
-  StressBuffer added(rule.points.size());
-  for (std::size_t q = 0; q < rule.points.size(); ++q)
-    added.set_point(q, Vec3(start + rule.points[q] * (end - start)));
-  add_segment_stress(system.medium(), near.table, added.batch());
-  const SegmentForces wrong = quadrature(line, panel, [&](std::size_t q) { return SymTensor(added.value(q)); });
+  const SegmentForces wrong = force_of_segments_by_rule(system.medium(), near.table, start, end, line.burgers, n_gauss);
   const SegmentForces exact =
       force_of_segments(system.medium(), near.table, start, end, line.burgers, pair_tolerance, near.itself);
+  const Vec3 at_start = exact.start - wrong.start, at_end = exact.end - wrong.end;
   // Linear shape functions of the panel's ends, in those of the line's.
-  force.start += (1 - panel.begin) * exact.start + (1 - panel.end) * exact.end - wrong.start;
-  force.end += panel.begin * exact.start + panel.end * exact.end - wrong.end;
+  force.start += (1 - panel.begin) * at_start + (1 - panel.end) * at_end;
+  force.end += panel.begin * at_start + panel.end * at_end;
 }
 } // namespace ddfem

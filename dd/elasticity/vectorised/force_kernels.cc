@@ -266,6 +266,26 @@ SegmentForces force_of_segments(const IsotropicMedium &medium, const LineTable &
   return force_of_lines(segment_kernels(), medium, segments, x3, x4, b34, tolerance, without);
 }
 
+SegmentForces force_of_segments_by_rule(const IsotropicMedium &medium, const LineTable &segments, const Vec3 &x3,
+                                        const Vec3 &x4, const Vec3 &b34, const int n_gauss)
+{
+  const double length = (x4 - x3).norm();
+  if (length == 0.0)
+    return {};
+  const internal::ForceTarget target{x3, x4, (x4 - x3) / length, b34, length};
+  internal::LaneSums sums;
+  std::array<double, internal::chunk_of_lines> n_points;
+  for (std::size_t block = 0; block < segments.n_blocks(); block += internal::chunk_of_blocks)
+  {
+    const std::size_t n_blocks = std::min(internal::chunk_of_blocks, segments.n_blocks() - block);
+    n_points.fill(n_gauss);
+    for (std::size_t i = segments.size(); i < (block + n_blocks) * LineTable::block_size; ++i)
+      n_points[i - block * LineTable::block_size] = -1.0; // nothing there
+    segment_kernels().add_lanes(medium, segments, block, n_blocks, target, n_points.data(), sums);
+  }
+  return forces_from(medium, sums, target);
+}
+
 SegmentForces force_of_rays(const IsotropicMedium &medium, const LineTable &rays, const Vec3 &x3, const Vec3 &x4,
                             const Vec3 &b34, const double tolerance)
 {

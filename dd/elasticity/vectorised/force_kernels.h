@@ -21,6 +21,9 @@ inline constexpr std::size_t no_line = std::numeric_limits<std::size_t>::max();
 /// depends on the table, the segment and the instruction set only.
 SegmentForces force_of_segments(const IsotropicMedium &medium, const LineTable &segments, const Vec3 &x3,
                                 const Vec3 &x4, const Vec3 &b34, double tolerance, std::size_t without = no_line);
+/// The same by a Gauss rule of @p n_gauss points for every pair, near ones included: what the stress at these points gives.
+SegmentForces force_of_segments_by_rule(const IsotropicMedium &medium, const LineTable &segments, const Vec3 &x3,
+                                        const Vec3 &x4, const Vec3 &b34, int n_gauss);
 
 /// The same for rays: segment_force_from_ray() of each.
 SegmentForces force_of_rays(const IsotropicMedium &medium, const LineTable &rays, const Vec3 &x3, const Vec3 &x4,

@@ -16,6 +16,15 @@ void add_segment_stress(const IsotropicMedium &medium, const LineTable &segments
 void add_segment_stress(const IsotropicMedium &medium, const LineTable &segments, std::span<const unsigned> which,
                         const StressBatch &batch);
 
+/// The same for points that are farther from the segments than half the length of each: fewer operations.
+void add_distant_segment_stress(const IsotropicMedium &medium, const LineTable &segments,
+                                std::span<const unsigned> which, const StressBatch &batch);
+/// The same in single precision. With points and lines within a few @p unit (nm) of @p origin, the error relative to a segment's stress
+/// is some 1e-6 times @p unit over its distance from the point. @p which: ascending.
+void add_single_precision_stress(const IsotropicMedium &medium, const LineTable &segments,
+                                 std::span<const unsigned> which, const Vec3 &origin, double unit,
+                                 const StressBatch &batch);
+
 /// Adds the stress of rays: ray_stress() to rounding.
 void add_ray_stress(const IsotropicMedium &medium, const LineTable &rays, const StressBatch &batch);
 void add_ray_stress(const IsotropicMedium &medium, const LineTable &rays, std::span<const unsigned> which,

@@ -1,6 +1,8 @@
 // The vectorised nodal forces of pairs against the scalar reference, for every instruction set of the machine.
 #include "dd/elasticity/distance.h"
+#include "dd/elasticity/gauss.h"
 #include "dd/elasticity/segment_force.h"
+#include "dd/elasticity/segment_stress.h"
 #include "dd/elasticity/vectorised/force_kernels.h"
 #include "tests/dd/elasticity/elasticity_test_helpers.h"
 #include "tests/dd/elasticity/kernel_targets.h"
@@ -149,6 +151,38 @@ TEST_P(ForceKernel, OfManyIsTheSumOfAllButTheOneLeftOut)
     }
     EXPECT_LT(difference(force_of_segments(copper_like, segments, x3, x4, b34, tolerance, without), sum), bound);
     EXPECT_LT(difference(force_of_rays(copper_like, rays, x3, x4, b34, tolerance), sum_of_rays), bound_of_rays);
+  }
+}
+
+TEST_P(ForceKernel, ByARuleIsThatOfTheStressAtItsPoints)
+{
+  RandomVectors random(23);
+  const Vec3 x3(1, 2, 3), x4(14, -5, 9), b(0.1, -0.2, 0.15);
+  LineTable table;
+  std::vector<SegmentStressField> fields;
+  for (int k = 0; k < 77; ++k) // more than are planned together, and not a multiple of a block
+  {
+    const Vec3 x1 = 20 * random.vector(), x2 = x1 + 10 * random.vector(), b12 = random.vector();
+    table.add_segment(x1, x2, b12);
+    fields.emplace_back(copper_like, x1, x2, b12);
+  }
+  for (const int n : {1, 2, 3})
+  {
+    SegmentForces sum{Vec3::Zero(), Vec3::Zero()};
+    double scale = 0;
+    const GaussRule rule = gauss_rule(n);
+    for (std::size_t q = 0; q < rule.points.size(); ++q)
+      for (const SegmentStressField &stress : fields)
+      {
+        const double s = rule.points[q];
+        const Vec3 f = rule.weights[q] * contract(stress(x3 + s * (x4 - x3)), b).cross(x4 - x3);
+        sum.start += (1 - s) * f;
+        sum.end += s * f;
+        scale += f.norm();
+      }
+    const SegmentForces f = force_of_segments_by_rule(copper_like, table, x3, x4, b, n);
+    EXPECT_LT((f.start - sum.start).norm(), 1e-13 * scale) << n;
+    EXPECT_LT((f.end - sum.end).norm(), 1e-13 * scale) << n;
   }
 }
 

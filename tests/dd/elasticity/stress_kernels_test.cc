@@ -1,4 +1,5 @@
 // The vectorised evaluation of stresses against the one point by point, for every instruction set of the machine.
+#include "dd/elasticity/distance.h"
 #include "dd/elasticity/segment_stress.h"
 #include "dd/elasticity/vectorised/stress_kernels.h"
 #include "tests/dd/elasticity/elasticity_test_helpers.h"
@@ -128,6 +129,45 @@ TEST_P(StressKernel, OfChosenLinesIsTheSumOfTheirFields)
       add(ray_fields[k](points[i]));
     }
     EXPECT_LT((buffer.value(i) - sum).norm(), 1e-13 * scale);
+  }
+}
+
+// The short form at points from half a length on, in both precisions. Bound of a stress: the integrand, mu b/(2 pi (1-nu) R^2), times
+// the length, R >= d. Rounding: of some 50 operations, and of coordinates, which are relative to the box in single precision.
+TEST_P(StressKernel, OfDistantSegmentsIsTheReferenceToItsPrecision)
+{
+  const IsotropicMedium &m = test::copper_like;
+  test::RandomVectors random(5);
+  constexpr double unit = 200, length = 30;
+  const Vec3 box(1e6, -2e5, 3e5); // far from the origin: what coordinates relative to the box are for
+  for (int k = 0; k < 200; ++k)
+  {
+    const Vec3 middle = box + unit * random.vector(), half = 0.5 * length * random.vector().normalized();
+    LineTable table;
+    for (int i = 0; i < 11; ++i) // others in the block
+      table.add_segment(box, box + random.vector(), b);
+    table.add_segment(middle - half, middle + half, b);
+    const std::vector<unsigned> which{11};
+    const Vec3 points[] = {middle + half.unitOrthogonal() * 0.5 * length, middle + 2 * half,
+                           middle + unit * random.vector()};
+    StressBuffer in_double(3), in_single(3);
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      in_double.set_point(i, points[i]);
+      in_single.set_point(i, points[i]);
+    }
+    add_distant_segment_stress(m, table, which, in_double.batch());
+    add_single_precision_stress(m, table, which, box, unit, in_single.batch());
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      const double d = std::sqrt(distance_point_segment(points[i], middle - half, middle + half).squared);
+      if (d < 0.49 * length)
+        continue;
+      const SymTensor exact = segment_stress(m, points[i], middle - half, middle + half, b);
+      const double bound = m.mu * b.norm() * length / (2 * std::numbers::pi * (1 - m.nu) * d * d);
+      EXPECT_LT((in_double.value(i) - exact).norm(), (1e-14 + 1e-15 * box.norm() / d) * bound);
+      EXPECT_LT((in_single.value(i) - exact).norm(), 5e-7 * (1 + unit / d) * bound);
+    }
   }
 }
 

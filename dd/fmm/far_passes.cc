@@ -1,0 +1,325 @@
+#include "dd/fmm/far_passes.h"
+
+#include "dd/fmm/accuracy.h"
+#include "dd/fmm/far_translations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+namespace ddfem::fmm
+{
+namespace
+{
+/// Boxes whose translations are sorted by direction together; the unit of work of a thread.
+constexpr std::uint32_t boxes_per_chunk = 64;
+
+/// Coefficients of one box, see ExpansionView.
+template <class Scalar> struct BoxExpansion
+{
+  typename Precision<Scalar>::Narrow::Row *fields;
+  Scalar *q;
+};
+
+/// Multipole or local coefficients of all boxes.
+template <class Scalar> class Expansions
+{
+public:
+  void reset(std::size_t n_boxes, int order)
+  {
+    n = n_harmonics(order);
+    fields.assign(n_boxes * n * row_width, Scalar{});
+    q.assign(n_boxes * n, Scalar{});
+  }
+  BoxExpansion<Scalar> of(const std::size_t box)
+  {
+    using Row = typename Precision<Scalar>::Narrow::Row;
+    return {reinterpret_cast<Row *>(fields.data() + box * n * row_width), q.data() + box * n};
+  }
+
+  /// Adds coefficients in double precision.
+  void add(const std::size_t box, const ExpansionView &given)
+  {
+    const BoxExpansion<Scalar> sum = of(box);
+    for (std::size_t k = 0; k < n; ++k)
+    {
+      for (std::size_t c = 0; c < row_width; ++c)
+        sum.fields[k][c] += static_cast<Scalar>(given.fields[k][c]);
+      sum.q[k] += static_cast<Scalar>(given.q[k]);
+    }
+  }
+  void copy(const std::size_t box, const std::size_t n_coefficients, const ExpansionView &result) const
+  {
+    const Scalar *const of_fields = fields.data() + box * n * row_width;
+    for (std::size_t k = 0; k < n_coefficients; ++k)
+    {
+      for (std::size_t c = 0; c < row_width; ++c)
+        result.fields[k][c] = static_cast<double>(of_fields[k * row_width + c]);
+      result.q[k] = static_cast<double>(q[box * n + k]);
+    }
+  }
+
+private:
+  std::size_t n = 0;
+  std::vector<Scalar, RowAllocator<Scalar>> fields;
+  std::vector<Scalar> q;
+};
+
+/// Coefficients of one box in double precision, zero at first.
+struct BoxBuffer
+{
+  RowBuffer fields;
+  std::vector<double> q;
+
+  explicit BoxBuffer(const int order) : fields(n_harmonics(order)), q(n_harmonics(order), 0.0) {}
+  ExpansionView view() { return {fields.rows(), q.data()}; }
+};
+
+std::size_t octant_of(const Box &box)
+{
+  const int octant = (box.place[0] & 1) + 2 * (box.place[1] & 1) + 4 * (box.place[2] & 1);
+  return static_cast<std::size_t>(octant);
+}
+
+template <class Scalar> class Passes final : public FarPasses
+{
+public:
+  Passes(const Octree &tree_, const RootGrid &grid, const ExpansionOrders &orders_)
+      : tree(tree_), orders(orders_), across(tree_, grid, orders_)
+  {
+    const Vec3 edges = grid.edges / grid.edges.maxCoeff();
+    for (int k = 0; k < 8; ++k)
+    {
+      const auto side = [k](int axis) { return (k >> axis & 1) != 0 ? 0.25 : -0.25; };
+      const Vec3 to_child_centre = edges.cwiseProduct(Vec3(side(0), side(1), side(2)));
+      to_parent.emplace_back(Shift::child_to_parent, orders.multipole, to_child_centre);
+      to_child.emplace_back(Shift::parent_to_child, orders.multipole, to_child_centre);
+    }
+  }
+
+  void upward(const AddToBox &add_own_moments) override
+  {
+    multipole.reset(tree.boxes().size(), orders.multipole);
+    for (std::size_t level = tree.levels().size() - 1; level-- > 0;)
+    {
+#pragma omp parallel for schedule(dynamic, 8)
+      for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
+        moments_of(i, add_own_moments);
+    }
+  }
+
+  void translate(std::span<const std::uint8_t> wanted) override
+  {
+    local.reset(tree.boxes().size(), orders.multipole);
+    for (std::size_t level = 0; level + 1 < tree.levels().size(); ++level)
+    {
+      const std::uint32_t begin = tree.levels()[level], end = tree.levels()[level + 1];
+#pragma omp parallel for schedule(dynamic, 1)
+      for (std::uint32_t b = begin; b < end; b += boxes_per_chunk)
+        translate_chunk(b, std::min(b + boxes_per_chunk, end), wanted);
+    }
+  }
+
+  void downward(std::span<const std::uint8_t> wanted, const int distant_level, const AddToBox &add_distant) override
+  {
+    for (std::size_t level = 0; level + 1 < tree.levels().size(); ++level)
+    {
+#pragma omp parallel for schedule(dynamic, 8)
+      for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
+        if (wanted[i] != 0)
+          pass_down_to(i, distant_level, add_distant);
+    }
+  }
+
+  void copy_local(const std::size_t box, const ExpansionView &result) const override
+  {
+    local.copy(box, n_harmonics(orders.multipole), result);
+  }
+
+private:
+  using Row = typename Precision<Scalar>::Narrow::Row;
+  using WideRow = typename Precision<Scalar>::Wide::Row;
+  static constexpr std::size_t wide = row_size / sizeof(Scalar); ///< numbers in a wide row
+
+  struct Task
+  {
+    std::uint32_t translation, target, source;
+    bool operator<(const Task &o) const
+    {
+      return std::tie(translation, target, source) < std::tie(o.translation, o.target, o.source);
+    }
+  };
+
+  void moments_of(const std::size_t index, const AddToBox &add_own_moments)
+  {
+    const Box &box = tree.boxes()[index];
+    if (box.n_lines() == 0)
+      return;
+    if (box.own_lines_end > box.lines_begin)
+    {
+      BoxBuffer own(orders.multipole);
+      add_own_moments(box, own.view());
+      multipole.add(index, own.view());
+    }
+    const Vec3 centre = tree.centre(box);
+    for (std::size_t i = box.first_child; i < box.first_child + box.n_children; ++i)
+      if (const Box &child = tree.boxes()[i]; child.n_lines() > 0)
+        translate_box(to_parent[octant_of(child)], centre - tree.centre(child), multipole.of(i), multipole.of(index));
+  }
+
+  /// Fields, and Q with its new reference point; @p shift (nm) from the old one.
+  void translate_box(const BasicTranslation<Scalar> &t, const Vec3 &shift, const BoxExpansion<Scalar> &source,
+                     const BoxExpansion<Scalar> &target) const
+  {
+    const std::size_t n = n_harmonics(t.order());
+    alignas(row_size) Row in[n_harmonics(max_order)];
+    alignas(row_size) Row out[n_harmonics(max_order)];
+    std::fill(in, in + n, Row{});
+    std::fill(out, out + n, Row{});
+    t.add(source.fields, target.fields);
+    move_reference_point(n, shift, source, in, 0);
+    t.add(in, out);
+    for (std::size_t k = 0; k < n; ++k)
+      target.q[k] += out[k][0];
+  }
+
+  /// Q of a box after a move of x0 by @p shift (nm), to a column of @p rows.
+  template <class AnyRow>
+  static void move_reference_point(const std::size_t n, const Vec3 &shift, const BoxExpansion<Scalar> &from,
+                                   AnyRow *const rows, const std::size_t column)
+  {
+    const auto dx = static_cast<Scalar>(shift[0]), dy = static_cast<Scalar>(shift[1]),
+               dz = static_cast<Scalar>(shift[2]);
+    for (std::size_t k = 0; k < n; ++k)
+      rows[k][column] = from.q[k] - (dx * from.fields[k][0] + dy * from.fields[k][1] + dz * from.fields[k][2]);
+  }
+
+  void translate_chunk(const std::uint32_t begin, const std::uint32_t end, std::span<const std::uint8_t> wanted)
+  {
+    std::vector<Task> tasks;
+    for (std::uint32_t i = begin; i < end; ++i)
+      if (wanted[i] != 0)
+        for (const FarLink &l : tree.far_links(i))
+          tasks.push_back({across.number(l.offset), i, l.box});
+    std::sort(tasks.begin(), tasks.end());
+    for (std::size_t first = 0, last = 0; first < tasks.size(); first = last)
+    {
+      while (last < tasks.size() && last - first < wide && tasks[last].translation == tasks[first].translation)
+        ++last;
+      const auto some = std::span(tasks).subspan(first, last - first);
+      if constexpr (std::is_same_v<Scalar, double>)
+        if (orders.n_antiderivatives > 0)
+        {
+          add_far_integrals(across.integrals(some.front().translation), some);
+          continue;
+        }
+      add_far(across.translation(some.front().translation), some);
+    }
+  }
+
+  void add_far(const BasicTranslation<Scalar> &translation, std::span<const Task> tasks);
+  void add_far_q(const BasicTranslation<Scalar> &translation, std::span<const Task> tasks);
+  void add_far_integrals(const HalfLineTranslation &translation, std::span<const Task> tasks);
+
+  void pass_down_to(const std::size_t index, const int distant_level, const AddToBox &add_distant)
+  {
+    const Box &box = tree.boxes()[index];
+    if (box.level > 0)
+      translate_box(to_child[octant_of(box)], tree.centre(box) - tree.centre(tree.boxes()[box.parent]),
+                    local.of(box.parent), local.of(index));
+    if (box.level == distant_level)
+    {
+      BoxBuffer distant(orders.multipole);
+      add_distant(box, distant.view());
+      local.add(index, distant.view());
+    }
+  }
+
+  const Octree &tree;
+  ExpansionOrders orders;
+  FarTranslations<Scalar> across;
+  std::vector<BasicTranslation<Scalar>> to_parent, to_child;
+  Expansions<Scalar> multipole, local;
+};
+
+template <class Scalar>
+void Passes<Scalar>::add_far(const BasicTranslation<Scalar> &translation, const std::span<const Task> tasks)
+{
+  std::size_t i = 0;
+  for (; i + 1 < tasks.size(); i += 2)
+    translation.add_two({multipole.of(tasks[i].source).fields, multipole.of(tasks[i + 1].source).fields},
+                        {local.of(tasks[i].target).fields, local.of(tasks[i + 1].target).fields});
+  if (i < tasks.size())
+    translation.add(multipole.of(tasks[i].source).fields, local.of(tasks[i].target).fields);
+  add_far_q(translation, tasks);
+}
+
+template <class Scalar>
+void Passes<Scalar>::add_far_q(const BasicTranslation<Scalar> &translation, const std::span<const Task> tasks)
+{
+  const std::size_t n = n_harmonics(translation.order());
+  const Vec3 shift = tree.size(tree.boxes()[tasks[0].target]) * translation.vector();
+  alignas(row_size) WideRow in[n_harmonics(max_order)];
+  alignas(row_size) WideRow out[n_harmonics(max_order)];
+  std::fill(in, in + n, WideRow{});
+  std::fill(out, out + n, WideRow{});
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    move_reference_point(n, shift, multipole.of(tasks[i].source), in, i);
+  translation.add_wide(in, out);
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+  {
+    Scalar *const q = local.of(tasks[i].target).q;
+    for (std::size_t k = 0; k < n; ++k)
+      q[k] += out[k][i];
+  }
+}
+
+template <>
+void Passes<double>::add_far_integrals(const HalfLineTranslation &translation, const std::span<const Task> tasks)
+{
+  const std::size_t n_in = n_harmonics(translation.source_order()), n_out = n_harmonics(translation.target_order());
+  const double size = tree.size(tree.boxes()[tasks[0].target]), unit = std::pow(size, orders.n_antiderivatives);
+  const Vec3 shift = size * translation.vector();
+  alignas(row_size) Row in[n_harmonics(max_order)];
+  alignas(row_size) Row out[n_harmonics(max_order)];
+  for (std::size_t first = 0; first < tasks.size(); first += 2) // P and Q of two boxes side by side
+  {
+    const auto pair = tasks.subspan(first, std::min<std::size_t>(2, tasks.size() - first));
+    std::fill(in, in + n_in, Row{});
+    std::fill(out, out + n_out, Row{});
+    for (std::size_t i = 0; i < pair.size(); ++i)
+    {
+      const BoxExpansion<double> source = multipole.of(pair[i].source);
+      move_reference_point(n_in, shift, source, in, 4 * i + 3);
+      for (std::size_t k = 0; k < n_in; ++k)
+        for (std::size_t c = 0; c < 3; ++c)
+          in[k][4 * i + c] = source.fields[k][c];
+    }
+    translation.add(in, out);
+    // The logarithm of the size is a translation of all points; it must be the same on all levels.
+    for (const int m : {1, -1})
+      out[harmonic_index(1, m)] += 0.5 * std::log(size) * in[harmonic_index(1, m)];
+    for (std::size_t i = 0; i < pair.size(); ++i)
+    {
+      const BoxExpansion<double> target = local.of(pair[i].target);
+      for (std::size_t k = 0; k < n_out; ++k)
+      {
+        for (std::size_t c = 0; c < 3; ++c)
+          target.fields[k][c] += unit * out[k][4 * i + c];
+        target.q[k] += unit * out[k][4 * i + 3];
+      }
+    }
+  }
+}
+} // namespace
+
+std::unique_ptr<FarPasses> make_far_passes(const Octree &tree, const RootGrid &grid, const ExpansionOrders &orders,
+                                           const bool single_precision)
+{
+  if (single_precision)
+    return std::make_unique<Passes<float>>(tree, grid, orders);
+  return std::make_unique<Passes<double>>(tree, grid, orders);
+}
+} // namespace ddfem::fmm
