@@ -42,6 +42,8 @@ struct MultipoleSettings
   int order = 0;
   /// Factor to the assumed cost of a translation: smaller for a deeper tree.
   double translation_cost_factor = 1.0;
+  /// Of all boxes with lines or points, for comparison; 0: by cost.
+  int depth = 0;
 };
 
 /// What to sum: all of it, or one part, for tests and measurements.
