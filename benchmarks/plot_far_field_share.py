@@ -42,15 +42,15 @@ def depths(runs):
     return sorted({depth for depth, _ in runs if depth > 0})
 
 
-def best(runs):
-    return min(depths(runs), key=lambda depth: total(runs[depth, "full"]))
+def best(runs, mode):
+    return min(depths(runs), key=lambda depth: total(runs[depth, mode]))
 
 
 def figure_modes(results):
-    """IV.28: what cut-off and full cost, at the best depth and at that by cost."""
+    """IV.28: what cut-off and full cost, each at its best depth and at that by cost."""
     figure, all_axes = plt.subplots(1, len(results), figsize=(9.6, 4.2), constrained_layout=True, squeeze=False)
     for axes, (case, runs) in zip(all_axes[0], results.items()):
-        bars = [(depth, mode) for mode in ("cut-off", "full") for depth in (best(runs), 0)]
+        bars = [(depth, mode) for mode in ("cut-off", "full") for depth in (best(runs, mode), 0)]
         bottom = [0.0] * len(bars)
         for index, (phase, label) in enumerate(PHASES):
             heights = [runs[bar][phase] for bar in bars]
@@ -100,6 +100,10 @@ def figure_depths(results):
             axes.semilogy(x, [quantity(runs[depth, mode]) for depth in x], color=colour, marker=marker, label=label)
         axes.axhline(total(runs[0, "full"]), color="k", linestyle="--", linewidth=0.8, label="full, by cost")
         axes.set_xticks(x)
+        low, high = axes.get_ylim()
+        ticks = [t for t in (100, 200, 500, 1000, 2000, 5000, 10000) if low < t < high]
+        axes.set_yticks(ticks, [str(t) for t in ticks])
+        axes.minorticks_off()
         axes.set_title(TITLES[case])
         axes.set_xlabel("depth of the tree")
         axes.set_ylabel("time of a step, ms")
