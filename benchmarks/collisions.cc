@@ -16,7 +16,7 @@ using namespace ddfem;
 constexpr double capture_radius = 0.05;    // nm
 constexpr double segments_per_unit = 50e3; // of irradiated_grain()
 
-MovingSegment moving(const IrradiatedGrain &grain, SegmentIndex s)
+MovingSegment moving(const MovingNetwork &grain, SegmentIndex s)
 {
   const Network &network = grain.network;
   const Vec3 &x = network.position(network.start(s));
@@ -24,7 +24,7 @@ MovingSegment moving(const IrradiatedGrain &grain, SegmentIndex s)
           grain.displacement[network.end(s).value]};
 }
 
-std::size_t count_contacts(const IrradiatedGrain &grain, std::span<const CandidatePair> pairs)
+std::size_t count_contacts(const MovingNetwork &grain, std::span<const CandidatePair> pairs)
 {
   std::size_t found = 0;
 #pragma omp parallel for schedule(static) reduction(+ : found)
@@ -71,7 +71,7 @@ void detect_collisions(benchmark::State &state)
   const int n_settling = 30, n_steps = state.range(0) < 1'000'000 ? 200 : 100;
   for ([[maybe_unused]] const auto unused : state)
   {
-    IrradiatedGrain grain = irradiated_grain(static_cast<double>(state.range(0)) / segments_per_unit);
+    MovingNetwork grain = irradiated_grain(static_cast<double>(state.range(0)) / segments_per_unit);
     Network &network = grain.network;
     CandidateList list;
     Stopwatch build, keep, detect;
@@ -112,7 +112,7 @@ void detect_collisions(benchmark::State &state)
 /// The same without lists that live on: everything is built in every step, with spheres that cover one step only.
 void detect_collisions_anew(benchmark::State &state)
 {
-  const IrradiatedGrain grain = irradiated_grain(static_cast<double>(state.range(0)) / segments_per_unit);
+  const MovingNetwork grain = irradiated_grain(static_cast<double>(state.range(0)) / segments_per_unit);
   omp_set_num_threads(static_cast<int>(state.range(1)));
   Stopwatch build, detect;
   for ([[maybe_unused]] const auto unused : state)

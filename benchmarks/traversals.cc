@@ -20,7 +20,7 @@ struct alignas(64) Sum
 /// The same content as a network and as plain arrays.
 struct Data
 {
-  IrradiatedGrain grain = irradiated_grain(grain_size);
+  MovingNetwork grain = irradiated_grain(grain_size);
   Network &network = grain.network;
   std::vector<Vec3> position, old_position, velocity = grain.displacement, burgers;
   std::vector<std::uint32_t> start, end, first_arm{0}, arms;

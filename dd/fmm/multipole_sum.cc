@@ -38,6 +38,7 @@ TreeSettings tree_settings(const MultipoleSettings &settings, const int order, c
   for (int distance2 = 0; distance2 <= 27; ++distance2)
     s.translation_cost.push_back(settings.translation_cost_factor * cost(std::sqrt(distance2)));
   s.smallest_box = smallest_box;
+  s.depth = settings.depth;
   return s;
 }
 

@@ -26,6 +26,8 @@ struct MultipoleSettings
   int order = 0;
   /// Factor to the assumed cost of a translation: smaller for a deeper tree.
   double translation_cost_factor = 1.0;
+  /// Of all boxes with lines or points, for comparison; 0: by cost.
+  int depth = 0;
 };
 
 /// Requested error from which on single precision suffices for what is not near.

@@ -185,6 +185,8 @@ bool Octree::is_worth_dividing(const std::size_t box, const std::vector<Neighbou
   const Box &a = all[box];
   if (size(a) / 2 < settings.smallest_box || neighbours.empty())
     return false;
+  if (settings.depth > 0)
+    return a.level < settings.depth;
   double work = 0;
   for (const Neighbour &n : neighbours)
   {
@@ -235,7 +237,7 @@ void Octree::pair(const std::size_t target, const Neighbour &source, Neighbours 
     neighbours[target - level_begin[level_begin.size() - 2]].push_back(source);
   else if (a.n_points() == 0 || b.n_lines() == 0)
     return;
-  else if (static_cast<double>(a.n_points() * b.n_lines()) < translation_cost(d))
+  else if (settings.depth == 0 && static_cast<double>(a.n_points() * b.n_lines()) < translation_cost(d))
     near[target].push_back({source.box, source.image, false});
   else
     far[target].push_back({source.box, d});

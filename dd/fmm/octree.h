@@ -77,6 +77,7 @@ struct TreeSettings
   std::vector<double> translation_cost;
   double longest_line = 0.5; ///< of a box's lines, in box sizes; longer ones stay in a larger box
   double smallest_box = 0.0; ///< nm
+  int depth = 0;             ///< levels below the roots, everywhere, and no distant pair is direct; 0: what costs least
 };
 
 class Octree

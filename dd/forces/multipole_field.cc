@@ -41,10 +41,10 @@ MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const 
   expansions = std::make_unique<fmm::MultipoleStress>(system.medium(), settings, grid, lines, distant, points);
 }
 
-std::vector<SymTensor> MultipoleField::stress(MPI_Comm comm)
+std::vector<SymTensor> MultipoleField::stress(MPI_Comm comm, const fmm::Part part)
 {
-  std::vector<SymTensor> values = expansions->stress(comm);
-  if (system.far_images())
+  std::vector<SymTensor> values = expansions->stress(comm, part);
+  if (system.far_images() && part != fmm::Part::near)
   {
 #pragma omp parallel for schedule(static)
     for (std::size_t i = 0; i < points.size(); ++i)

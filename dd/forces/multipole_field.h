@@ -48,9 +48,10 @@ public:
   /// @throws std::invalid_argument for a tolerance outside its range.
   MultipoleField(const LineSystem &system, std::span<const Vec3> points, const fmm::MultipoleSettings &settings);
 
-  /// As LineSystem::stress(): infinite-body stress at the points, MPa, periodic images included. Collective; all ranks get
-  /// all values, which do not depend on the number of ranks and threads.
-  std::vector<SymTensor> stress(MPI_Comm comm);
+  /// As LineSystem::stress(): infinite-body stress at the points, MPa, periodic images included; those beyond the 26
+  /// neighbours belong to the far part. Collective; all ranks get all values, which do not depend on the number of ranks
+  /// and threads.
+  std::vector<SymTensor> stress(MPI_Comm comm, fmm::Part part = fmm::Part::all);
 
   fmm::MultipoleStress &sum() { return *expansions; }
   const fmm::MultipoleStress &sum() const { return *expansions; }
@@ -71,9 +72,10 @@ private:
 class MultipoleForces
 {
 public:
-  /// Computes the stress at all Gauss points. Collective. @p pair_tolerance: of the forces in closed form.
+  /// Computes the stress at all Gauss points. Collective. @p pair_tolerance: of the forces in closed form. @p part: near
+  /// leaves out what distant boxes add (a cut-off at the size of the boxes), for comparison.
   MultipoleForces(const LineSystem &system, const fmm::MultipoleSettings &settings, double pair_tolerance,
-                  MPI_Comm comm);
+                  MPI_Comm comm, fmm::Part part = fmm::Part::all);
 
   /// Forces on line number @p i of the system, without its own (self_force.h), MPa nm^2. Safe to call from any thread.
   SegmentForces operator()(std::size_t i) const;

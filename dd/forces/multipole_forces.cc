@@ -44,7 +44,7 @@ SegmentForces &operator+=(SegmentForces &f, const SegmentForces &g)
 } // namespace
 
 MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::MultipoleSettings &settings,
-                                 const double pair_tolerance_, MPI_Comm comm)
+                                 const double pair_tolerance_, MPI_Comm comm, const fmm::Part part)
     : system(system_), pair_tolerance(pair_tolerance_), n_gauss(n_points_for(settings.tolerance / near_to_far)),
       near_distance(near_distance_for(settings.tolerance / near_to_far, n_gauss))
 {
@@ -61,7 +61,7 @@ MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::Multipole
         points.emplace_back(line.start + (p.begin + z * (p.end - p.begin)) * (line.end - line.start));
   }
   multipoles = std::make_unique<MultipoleField>(system, points, settings);
-  stress = multipoles->stress(comm);
+  stress = multipoles->stress(comm, part);
 }
 
 std::vector<MultipoleForces::Panel> MultipoleForces::panels_of(const std::size_t i) const

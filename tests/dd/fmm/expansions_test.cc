@@ -319,6 +319,36 @@ TEST(Octree, EveryLineActsOnceOnEveryPoint)
     }
 }
 
+TEST(Octree, HasTheGivenDepthEverywhere)
+{
+  RandomVectors random(4);
+  std::vector<LineSource> lines;
+  std::vector<Vec3> points;
+  for (int k = 0; k < 300; ++k) // clustered: by cost, the depth would vary
+  {
+    const Vec3 x = std::pow(std::abs(random.number()), 4) * random.vector(), d = 0.01 * random.vector();
+    lines.push_back({x - d, x + d, random.vector()});
+    points.push_back(x);
+  }
+  TreeSettings settings;
+  settings.translation_cost = std::vector<double>(28, 20.0);
+  settings.depth = 3;
+  for (const bool periodic : {false, true})
+  {
+    const Octree tree({Vec3(-1, -1, -1), Vec3(2, 2, 2), {1, 1, 1}, periodic}, extents_of(lines), points, settings);
+    for (std::size_t i = 0; i < tree.boxes().size(); ++i)
+    {
+      if (!tree.boxes()[i].is_leaf())
+        continue;
+      EXPECT_EQ(tree.boxes()[i].level, settings.depth);
+      ASSERT_EQ(lines_that_act(tree, i), lines.size() * (periodic ? 27 : 1));
+      for (const NearLink &l : tree.near_links(i)) // only of boxes that touch
+        for (std::size_t c = 0; c < 3 && l.image == 0; ++c)
+          EXPECT_LE(std::abs(tree.boxes()[l.box].place[c] - tree.boxes()[i].place[c]), 1);
+    }
+  }
+}
+
 TEST(Octree, HoldsLongLinesInLargeBoxes)
 {
   std::vector<LineSource> lines;
