@@ -1,0 +1,61 @@
+// Lines in the boxes they were in when their far field was computed.
+#pragma once
+
+#include "dd/fmm/octree.h"
+#include "dd/forces/line_system.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace ddfem
+{
+/// Lines for a tree made at another time. Each acts exactly once: on near points directly, and on distant ones by what the expansions
+/// of that time hold of it.
+struct LinesInBoxes
+{
+  std::vector<fmm::LineSource> lines; ///< those of the system in its order, then what corrects changes of topology
+  std::vector<std::uint32_t> box;
+  double displacement = 0;     ///< rms over the ends of the lines, nm
+  bool in_system_frame = true; ///< all lines are the images that the system has
+};
+
+/**
+ * Lines of a network at one time, and their boxes. Later, a line that still exists stays in its box. Lines that have appeared or
+ * gone form patches of what shares nodes; the new ones go to one box of a gone one. The other gone lines of the patch are
+ * taken over from their boxes: G in its old box and -G in the new one. Points near both see neither, those near the
+ * old box only see G, which the new lines replace nowhere else, and those near the new box only see -G, which the expansions
+ * still hold.
+ */
+class FrozenLines
+{
+public:
+  /// @p tree: of the lines of @p system.
+  FrozenLines(const Network &network, const LineSystem &system, const fmm::Octree &tree);
+
+  /// Lines of the network as it is now in the boxes of @p tree; empty if one is too far from its box, or none that it came
+  /// from is known.
+  std::optional<LinesInBoxes> place(const Network &network, const LineSystem &system, const fmm::Octree &tree) const;
+
+private:
+  struct Line
+  {
+    ObjectId id, start_node, end_node;
+    StraightLine line;
+    std::uint32_t box;
+  };
+  struct Patch
+  {
+    std::vector<std::size_t> gone, appeared; ///< numbers of frozen lines, and of lines of the system
+  };
+
+  const Line *find(const Network &network, SegmentIndex s) const;
+  std::vector<Patch> patches(const Network &network, const std::vector<std::uint8_t> &is_here,
+                             const std::vector<std::size_t> &appeared) const;
+  bool place_patch(const Patch &patch, const LineSystem &system, const fmm::Octree &tree, LinesInBoxes &placed) const;
+  bool fits(const Patch &patch, const Line &host, const LineSystem &system, const fmm::Octree &tree) const;
+
+  std::vector<Line> frozen; ///< in the order of their ids
+};
+} // namespace ddfem
