@@ -158,10 +158,15 @@ std::vector<SymTensor> MultipoleStress::stress(MPI_Comm comm, const Part part)
   return in_given_order<SymTensor>();
 }
 
-std::vector<SymTensor> MultipoleStress::stress_with_kept_far_field(MPI_Comm comm, const Part part,
-                                                                   const std::size_t stride)
+std::vector<SymTensor> MultipoleStress::stress_with_kept_far_field(MPI_Comm comm, const KeptExpansions &use)
 {
-  evaluate(comm, part, stride);
+  evaluate(comm, use);
+  return in_given_order<SymTensor>();
+}
+
+std::vector<SymTensor> MultipoleStress::stress_with_new_far_field(MPI_Comm comm)
+{
+  compute_again(comm, Part::all);
   return in_given_order<SymTensor>();
 }
 } // namespace ddfem::fmm

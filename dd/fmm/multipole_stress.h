@@ -25,8 +25,10 @@ public:
   /// Octree::move().
   void move(std::span<const LineSource> lines, std::span<const std::uint32_t> box_of_line, std::span<const Vec3> points,
             std::span<const std::uint32_t> leaf_of_point);
-  /// Stress after move(), in every @p stride -th leaf; zero elsewhere. Collective.
-  std::vector<SymTensor> stress_with_kept_far_field(MPI_Comm comm, Part part, std::size_t stride);
+  /// Stress after move(), MPa. Collective.
+  std::vector<SymTensor> stress_with_kept_far_field(MPI_Comm comm, const KeptExpansions &use);
+  /// The same with a new far field; the last one is kept for extrapolation.
+  std::vector<SymTensor> stress_with_new_far_field(MPI_Comm comm);
 
   /// The lines in the order of the tree.
   const std::vector<LineSource> &lines() const { return sources; }

@@ -159,11 +159,11 @@ void MultipoleSum::far_passes()
                    [this](const Box &box, const ExpansionView &expansion) { add_distant(box, expansion); });
 }
 
-void MultipoleSum::add_far_of(const std::size_t leaf)
+void MultipoleSum::add_far_of(const std::size_t leaf, const double ahead)
 {
   RowBuffer fields(n_harmonics(expansion_order_));
   std::vector<double> q(fields.size(), 0.0);
-  passes->copy_local(leaf, {fields.rows(), q.data()});
+  passes->copy_local(leaf, ahead, {fields.rows(), q.data()});
   add_far(tree.boxes()[leaf], fields.rows(), q.data());
 }
 
@@ -172,23 +172,30 @@ void MultipoleSum::compute(MPI_Comm comm, const Part part)
   choose_share(comm);
   if (part != Part::near)
     far_passes();
-  evaluate(comm, part);
+  evaluate(comm, {.part = part});
 }
 
-void MultipoleSum::evaluate(MPI_Comm comm, const Part part, const std::size_t stride)
+void MultipoleSum::compute_again(MPI_Comm comm, const Part part)
+{
+  passes->keep_local();
+  far_passes();
+  evaluate(comm, {.part = part});
+}
+
+void MultipoleSum::evaluate(MPI_Comm comm, const KeptExpansions &use)
 {
   for (std::vector<double> &v : values)
     v.assign(tree.point_order().size(), 0.0);
-  const std::size_t first = (first_leaf + stride - 1) / stride * stride;
-  if (part != Part::near)
+  const std::size_t stride = use.stride, first = (first_leaf + stride - 1) / stride * stride;
+  if (use.part != Part::near)
   {
     const Stopwatch watch(seconds.points);
 #pragma omp parallel for schedule(dynamic, 1)
     for (std::size_t k = first; k < last_leaf; k += stride)
       if (tree.boxes()[leaves[k]].n_points() > 0)
-        add_far_of(leaves[k]);
+        add_far_of(leaves[k], use.ahead);
   }
-  if (part != Part::far)
+  if (use.part != Part::far)
   {
     const Stopwatch watch(seconds.near);
 #pragma omp parallel for schedule(dynamic, 1)

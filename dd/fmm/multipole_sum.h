@@ -41,6 +41,14 @@ enum class Part : std::uint8_t
   far
 };
 
+/// How the local expansions of an earlier time are used.
+struct KeptExpansions
+{
+  double ahead = 0;       ///< extrapolated by so many times the change before
+  std::size_t stride = 1; ///< at the points of every so many leaves; zero elsewhere
+  Part part = Part::all;
+};
+
 /**
  * Near pairs of boxes by closed forms, distant pairs by expansions of harmonic potentials, on an adaptive octree that is divided
  * as long as that saves work. Large sources stay in large boxes. All sums run in a fixed order: the result does not depend on the
@@ -75,9 +83,10 @@ protected:
   /// Puts other sources and points into the boxes, see Octree::move(); local expansions stay those of the last compute().
   void move(std::span<const SourceExtent> sources, std::span<const std::uint32_t> box_of_source,
             std::span<const Vec3> points, std::span<const std::uint32_t> leaf_of_point);
-  /// Evaluates the local expansions of the last compute() and what acts directly, at the points of every @p stride -th leaf; zero
-  /// elsewhere. Collective, with the shares of that time.
-  void evaluate(MPI_Comm comm, Part part, std::size_t stride = 1);
+  /// As compute() after move(), with the shares of the last time; keeps its local expansions for extrapolation.
+  void compute_again(MPI_Comm comm, Part part);
+  /// Evaluates the local expansions of the last compute() and what acts directly. Collective, with the shares of that time.
+  void evaluate(MPI_Comm comm, const KeptExpansions &use);
   /// Values at the points in the order given.
   template <class Value> std::vector<Value> in_given_order() const
   {
@@ -118,7 +127,7 @@ private:
   double work(std::size_t leaf) const;
   void far_passes();
   void place_points(std::span<const Vec3> points);
-  void add_far_of(std::size_t leaf);
+  void add_far_of(std::size_t leaf, double ahead);
   void gather(MPI_Comm comm);
 
   MultipoleSettings settings;

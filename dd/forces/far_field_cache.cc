@@ -10,8 +10,12 @@ namespace
 {
 /// How far a point may lie outside its leaf, in sizes of the leaf: local expansions converge less and less there.
 constexpr double farthest_of_leaf = 0.1;
+/// How far the middle of a line may lie outside its box, in box sizes, when the moments of the box are computed again.
+constexpr double farthest_in_same_tree = 0.1;
+/// Change of the number of lines after which a tree is made anew.
+constexpr double largest_change = 0.1;
 /// The displacement up to which a measured growth of the error is trusted, in those it was measured at.
-constexpr double growth = 2;
+constexpr double trusted_growth = 2;
 /// Leaves in which errors are measured: a sixteenth, but some in small trees.
 constexpr std::size_t largest_stride = 16, fewest_leaves = 32;
 
@@ -38,17 +42,17 @@ FarFieldCache::Field FarFieldCache::evaluate(const FieldRequest &request)
   const bool starts = std::exchange(at_start_of_step, false);
   if (settings.mode == FarFieldRefresh::never)
     return fresh(request, fmm::Part::near);
-  const std::optional<Placement> placement = place(request);
-  if (starts && (!placement || is_due(*placement)))
-    return refresh(request, placement);
-  if (!placement || !is_allowed(*placement))
+  std::optional<Placement> placement = place(request);
+  if (starts && (!placement || is_due(request, *placement)))
+    return refresh(request, std::move(placement));
+  if (!placement || !is_allowed(request, *placement))
   {
     ++n.without;
     return fresh(request, fmm::Part::all);
   }
   ++n.kept;
   move(request, *placement);
-  return {kept->field, kept->field->stress_with_kept_far_field(request.comm)};
+  return {kept->field, kept->field->stress_with_kept_far_field(request.comm, placement->lines.ahead)};
 }
 
 std::optional<FarFieldCache::Placement> FarFieldCache::place(const FieldRequest &request) const
@@ -73,54 +77,108 @@ std::optional<FarFieldCache::Placement> FarFieldCache::place(const FieldRequest 
   return placement;
 }
 
-bool FarFieldCache::is_due(const Placement &placement)
+/// By which the error is estimated: what the extrapolation leaves of the motion, and its curvature as a displacement.
+double FarFieldCache::displacement_of(const Placement &placement) const
+{
+  const fmm::Octree &tree = kept->field->sum().octree();
+  return placement.lines.displacement + placement.lines.curvature / tree.size(tree.boxes().back());
+}
+
+double FarFieldCache::tolerated_error(const FieldRequest &request) const
+{
+  return settings.share_of_tolerance * request.settings.tolerance;
+}
+
+double FarFieldCache::allowed_displacement(const FieldRequest &request, const Placement &placement)
+{
+  return growth_of(placement).allowed(tolerated_error(request));
+}
+
+double FarFieldCache::Growth::allowed(const double tolerated) const
+{
+  return rate > 0 ? std::min(tolerated / rate, trusted) : trusted;
+}
+
+void FarFieldCache::Growth::learn(const double tolerated, const double error, const double displacement)
+{
+  if (displacement == 0)
+    return;
+  const double before = allowed(tolerated);
+  // What small errors consist of besides need not grow: they only bound the rate from above.
+  if (rate == 0 || error > 0.5 * tolerated || error < rate * displacement)
+    rate = error / displacement;
+  trusted = trusted_growth * std::max(displacement, before);
+}
+
+bool FarFieldCache::is_due(const FieldRequest &request, const Placement &placement)
 {
   ++kept->n_steps;
   if (settings.mode == FarFieldRefresh::every_n_steps)
     return kept->n_steps >= settings.interval;
-  // The step that begins moves the lines about as far as the last one, and all of it should use one far field.
-  const double now = placement.lines.displacement;
-  const double last_step = now - std::exchange(kept->at_last_start, now);
-  return now + last_step > allowed_displacement;
+  // All of the step that begins should use one far field. Its displacement grows by about half more than in the last one.
+  const double now = displacement_of(placement), last_step = now - std::exchange(kept->at_last_start, now);
+  return now + 1.5 * std::max(0.0, last_step) > allowed_displacement(request, placement);
 }
 
-bool FarFieldCache::is_allowed(const Placement &placement) const
+bool FarFieldCache::is_allowed(const FieldRequest &request, const Placement &placement)
 {
-  return settings.mode == FarFieldRefresh::every_n_steps || placement.lines.displacement <= allowed_displacement;
+  return settings.mode == FarFieldRefresh::every_n_steps ||
+         displacement_of(placement) <= allowed_displacement(request, placement);
 }
 
-FarFieldCache::Field FarFieldCache::refresh(const FieldRequest &request, const std::optional<Placement> &placement)
+bool FarFieldCache::tree_is_good(const std::optional<Placement> &placement, const std::size_t n_lines) const
+{
+  if (!placement || settings.mode != FarFieldRefresh::adaptive || placement->lines.farthest > farthest_in_same_tree)
+    return false;
+  const auto now = static_cast<double>(n_lines), then = static_cast<double>(kept->n_lines);
+  return std::abs(now - then) <= largest_change * then;
+}
+
+FarFieldCache::Field FarFieldCache::refresh(const FieldRequest &request, std::optional<Placement> placement)
 {
   ++n.refreshed;
+  return tree_is_good(placement, request.system.lines().size()) ? refresh_in_same_tree(request, std::move(*placement))
+                                                                : refresh_in_new_tree(request);
+}
+
+FarFieldCache::Field FarFieldCache::refresh_in_new_tree(const FieldRequest &request)
+{
+  ++n.trees;
   Field result = fresh(request, fmm::Part::all);
-  if (!request.system.rays().empty() || settings.mode == FarFieldRefresh::every_evaluation)
-    return result;
-  if (placement && settings.mode == FarFieldRefresh::adaptive)
-    measure(request, *placement, result.stress);
-  kept = std::make_unique<Kept>(
-      Kept{result.field, FrozenLines(request.network, request.system, result.field->sum().octree())});
+  kept.reset();
+  if (request.system.rays().empty() && settings.mode != FarFieldRefresh::every_evaluation)
+    kept = std::make_unique<Kept>(Kept{result.field,
+                                       FrozenLines(request.network, request.system, result.field->sum().octree()),
+                                       request.system.lines().size()});
   return result;
 }
 
-void FarFieldCache::measure(const FieldRequest &request, const Placement &placement,
-                            const std::vector<SymTensor> &exact)
+FarFieldCache::Field FarFieldCache::refresh_in_same_tree(const FieldRequest &request, Placement placement)
 {
-  move(request, placement);
   MultipoleField &field = *kept->field;
   const std::size_t stride = std::clamp<std::size_t>(field.sum().n_leaves() / fewest_leaves, 1, largest_stride);
+  move(request, placement);
+  displacement = displacement_of(placement);
   const std::vector<std::size_t> sample = field.sum().points_of_leaves(stride);
-  const auto far = field.sum().stress_with_kept_far_field(request.comm, fmm::Part::far, stride);
-  const auto near = field.sum().stress_with_kept_far_field(request.comm, fmm::Part::near, stride);
+  const auto in_sample = [&](const fmm::Part part) {
+    return field.sum().stress_with_kept_far_field(request.comm, {placement.lines.ahead, stride, part});
+  };
+  const std::vector<SymTensor> far = in_sample(fmm::Part::far), close = in_sample(fmm::Part::near);
+
+  FrozenLines lines = kept->lines.continued(request.network, placement.lines);
+  placement.lines.drop_corrections(request.system.lines().size());
+  move(request, placement);
+  std::vector<SymTensor> stress = field.stress_with_new_far_field(request.comm);
   double difference = 0, scale = 0;
   for (const std::size_t i : sample)
   {
-    difference += (far[i] + near[i] + field.stress_of_distant_images(i) - exact[i]).squaredNorm();
+    difference += (far[i] + close[i] + field.stress_of_distant_images(i) - stress[i]).squaredNorm();
     scale += far[i].squaredNorm();
   }
-  displacement = placement.lines.displacement;
   error = scale > 0 ? std::sqrt(difference / scale) : 0.0;
-  const double tolerated = settings.share_of_tolerance * request.settings.tolerance;
-  allowed_displacement = displacement * (error > 0 ? std::min(growth, tolerated / error) : growth);
+  growth_of(placement).learn(tolerated_error(request), error, displacement);
+  kept = std::make_unique<Kept>(Kept{kept->field, std::move(lines), kept->n_lines});
+  return {kept->field, std::move(stress)};
 }
 
 void FarFieldCache::move(const FieldRequest &request, const Placement &placement)

@@ -6,6 +6,7 @@
 
 #include <mpi.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -43,11 +44,12 @@ struct FieldRequest
 };
 
 /**
- * Keeps the tree and the local expansions of one time. Near fields are those of the lines as they are, local expansions are
- * evaluated where the points are. The error of a kept far field grows in proportion to the displacement of the lines since, by a
- * factor that is measured at every refresh: in a sample of leaves, the stress by the kept and by the new far field are compared.
- * What is kept changes at the first evaluation after begin_step() only: others leave no trace, and equal networks get
- * equal forces within a step. An evaluation that what is kept is no longer good for does without it.
+ * Keeps the tree and the local expansions of one time. Near fields are those of the lines as they are; local expansions are
+ * evaluated where the points are, and extrapolated along the motion of the lines between the last two refreshes, which
+ * use one tree as long as the lines stay near their boxes. The error grows in proportion to the displacement of the lines besides
+ * that motion, by a factor that is measured at every refresh: in a sample of leaves, the stress by the kept and by
+ * the new far field are compared. What is kept changes at the first evaluation after begin_step() only: others leave no trace, and equal
+ * networks get equal forces within a step. An evaluation that what is kept is no longer good for does without it.
  *
  * Virtual rays are not followed: with any, the far field is computed at every evaluation.
  */
@@ -70,11 +72,11 @@ public:
   /// What has been done so far.
   struct Counts
   {
-    unsigned refreshed = 0, kept = 0;
+    unsigned refreshed = 0, kept = 0, trees = 0;
     unsigned without = 0; ///< far field computed, but not kept
   };
   const Counts &counts() const { return n; }
-  /// Error of the kept far field at the last refresh, relative to its rms, and rms displacement of the lines until then, nm.
+  /// Error of the kept far field when it was last measured, relative to its rms, and the displacement then, nm.
   double measured_error() const { return error; }
   double measured_displacement() const { return displacement; }
 
@@ -84,25 +86,41 @@ private:
     LinesInBoxes lines;
     std::vector<std::uint32_t> leaf_of_point;
   };
+  /// Of the error of the far field with the displacement.
+  struct Growth
+  {
+    double rate = 0;    ///< 1/nm; 0: not known
+    double trusted = 0; ///< displacement up to which it is, nm
+
+    double allowed(double tolerated) const;
+    void learn(double tolerated, double error, double displacement);
+  };
   struct Kept
   {
     std::shared_ptr<MultipoleField> field;
     FrozenLines lines;
+    std::size_t n_lines;      ///< when the tree was made
     double at_last_start = 0; ///< displacement when the last step began, nm
-    unsigned n_steps = 0;     ///< since
+    unsigned n_steps = 0;     ///< since the refresh
   };
 
   std::optional<Placement> place(const FieldRequest &request) const;
-  bool is_due(const Placement &placement);
-  bool is_allowed(const Placement &placement) const;
-  Field refresh(const FieldRequest &request, const std::optional<Placement> &placement);
-  void measure(const FieldRequest &request, const Placement &placement, const std::vector<SymTensor> &exact);
+  double displacement_of(const Placement &placement) const;
+  Growth &growth_of(const Placement &placement) { return growth[placement.lines.ahead > 0 ? 1 : 0]; }
+  double tolerated_error(const FieldRequest &request) const;
+  double allowed_displacement(const FieldRequest &request, const Placement &placement);
+  bool is_due(const FieldRequest &request, const Placement &placement);
+  bool is_allowed(const FieldRequest &request, const Placement &placement);
+  bool tree_is_good(const std::optional<Placement> &placement, std::size_t n_lines) const;
+  Field refresh(const FieldRequest &request, std::optional<Placement> placement);
+  Field refresh_in_new_tree(const FieldRequest &request);
+  Field refresh_in_same_tree(const FieldRequest &request, Placement placement);
   void move(const FieldRequest &request, const Placement &placement);
 
   RefreshSettings settings;
   std::unique_ptr<Kept> kept;
   bool at_start_of_step = false;
-  double allowed_displacement = 0; ///< of the lines from where they were at the refresh, nm
+  std::array<Growth, 2> growth; ///< without and with extrapolation
   double error = 0, displacement = 0;
   Counts n;
 };

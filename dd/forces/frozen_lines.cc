@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <unordered_map>
 
 namespace ddfem
@@ -12,6 +11,8 @@ namespace
 /// How far the middle of a line may lie outside its box, in box sizes, and in shortest edges of the periodic cell: images are
 /// exact in a margin only.
 constexpr double farthest_of_box = 0.25, farthest_of_cell = 0.05;
+/// In motions before.
+constexpr double farthest_ahead = 10;
 
 Vec3 middle(const StraightLine &l)
 {
@@ -27,11 +28,40 @@ Vec3 shift_towards(const PeriodicCell *const cell, const Vec3 &x, const Vec3 &re
   return cell->minimum_image(d) - d;
 }
 
-bool is_at(const Vec3 &x, const std::uint32_t box, const PeriodicCell *const cell, const fmm::Octree &tree)
+/// Whether a line with its middle at @p x is near enough to a box. @p farthest: set to the largest distance, in box sizes.
+bool stays(const Vec3 &x, const std::uint32_t box, const PeriodicCell *const cell, const fmm::Octree &tree,
+           double &farthest)
 {
-  const double limit = farthest_of_box * tree.size(tree.boxes()[box]);
-  return tree.distance_outside(box, x) <= (cell ? std::min(limit, farthest_of_cell * cell->lengths.minCoeff()) : limit);
+  const double outside = tree.distance_outside(box, x), size = tree.size(tree.boxes()[box]);
+  farthest = std::max(farthest, outside / size);
+  return outside <= farthest_of_box * size && (!cell || outside <= farthest_of_cell * cell->lengths.minCoeff());
 }
+
+/// Motion of the ends of all lines, compared with the one before.
+class Motion
+{
+public:
+  void add(const Vec3 &now, const Vec3 &before)
+  {
+    now_now += now.squaredNorm();
+    now_before += now.dot(before);
+    before_before += before.squaredNorm();
+    n += 1;
+  }
+  void finish(LinesInBoxes &placed) const
+  {
+    if (n == 0)
+      return;
+    const double t = before_before > 0 ? std::clamp(now_before / before_before, 0.0, farthest_ahead) : 0.0;
+    const double left = now_now - 2 * t * now_before + t * t * before_before;
+    placed.ahead = t;
+    placed.displacement = std::sqrt(std::max(0.0, left / n));
+    placed.curvature = t * (1 + t) * before_before / n;
+  }
+
+private:
+  double now_now = 0, now_before = 0, before_before = 0, n = 0; ///< sums of products, nm^2; number
+};
 
 fmm::LineSource moved(const StraightLine &l, const Vec3 &shift, const double sign = 1)
 {
@@ -67,14 +97,44 @@ private:
 FrozenLines::FrozenLines(const Network &network, const LineSystem &system, const fmm::Octree &tree)
 {
   const std::vector<std::uint32_t> boxes = tree.boxes_of_lines();
-  std::size_t i = 0;
-  for (const SegmentIndex s : network.segments())
+  for (std::size_t i = 0; const SegmentIndex s : network.segments())
   {
-    frozen.push_back(
-        {network.id(s), network.id(network.start(s)), network.id(network.end(s)), system.lines()[i], boxes[i]});
+    frozen.push_back({network.id(s), network.id(network.start(s)), network.id(network.end(s)), system.lines()[i],
+                      boxes[i], Vec3::Zero(), Vec3::Zero()});
     ++i;
   }
+  sort();
+}
+
+void FrozenLines::sort()
+{
   std::sort(frozen.begin(), frozen.end(), [](const Line &a, const Line &b) { return a.id < b.id; });
+}
+
+FrozenLines FrozenLines::continued(const Network &network, const LinesInBoxes &placed) const
+{
+  FrozenLines now;
+  for (std::size_t i = 0; const SegmentIndex s : network.segments())
+  {
+    const fmm::LineSource &l = placed.lines[i];
+    Line line{network.id(s),
+              network.id(network.start(s)),
+              network.id(network.end(s)),
+              {l.start, l.end, l.burgers},
+              placed.box[i],
+              Vec3::Zero(),
+              Vec3::Zero()};
+    // Lines that have changed their box belong to other expansions: their change is no motion.
+    if (const Line *const old = find(network, s); old && placed.lines.size() == network.n_segments())
+    {
+      line.start_motion = l.start - old->line.start;
+      line.end_motion = l.end - old->line.end;
+    }
+    now.frozen.push_back(line);
+    ++i;
+  }
+  now.sort();
+  return now;
 }
 
 /// The same line at the time of the far field; null if it is new or has another Burgers vector.
@@ -93,9 +153,8 @@ std::optional<LinesInBoxes> FrozenLines::place(const Network &network, const Lin
   placed.box.resize(system.lines().size());
   std::vector<std::uint8_t> is_here(frozen.size(), 0);
   std::vector<std::size_t> appeared;
-  std::size_t i = 0;
-  double squares = 0;
-  for (const SegmentIndex s : network.segments())
+  Motion motion;
+  for (std::size_t i = 0; const SegmentIndex s : network.segments())
   {
     const StraightLine &l = system.lines()[i];
     if (const Line *const old = find(network, s))
@@ -104,16 +163,17 @@ std::optional<LinesInBoxes> FrozenLines::place(const Network &network, const Lin
       placed.lines[i] = moved(l, shift);
       placed.box[i] = old->box;
       placed.in_system_frame = placed.in_system_frame && shift.isZero(0);
-      squares += (l.start + shift - old->line.start).squaredNorm() + (l.end + shift - old->line.end).squaredNorm();
+      motion.add(l.start + shift - old->line.start, old->start_motion);
+      motion.add(l.end + shift - old->line.end, old->end_motion);
       is_here[static_cast<std::size_t>(old - frozen.data())] = 1;
-      if (!is_at(middle(l) + shift, old->box, system.cell(), tree))
+      if (!stays(middle(l) + shift, old->box, system.cell(), tree, placed.farthest))
         return {};
     }
     else
       appeared.push_back(i);
     ++i;
   }
-  placed.displacement = std::sqrt(squares / (2.0 * static_cast<double>(std::max<std::size_t>(1, i - appeared.size()))));
+  motion.finish(placed);
   for (const Patch &p : patches(network, is_here, appeared))
     if (!place_patch(p, system, tree, placed))
       return {};
@@ -145,7 +205,8 @@ bool FrozenLines::fits(const Patch &patch, const Line &host, const LineSystem &s
   const auto is_near = [&](const StraightLine &l)
   {
     const Vec3 x = middle(l);
-    return is_at(x + shift_towards(system.cell(), x, middle(host.line)), host.box, system.cell(), tree);
+    double farthest = 0;
+    return stays(x + shift_towards(system.cell(), x, middle(host.line)), host.box, system.cell(), tree, farthest);
   };
   return std::all_of(patch.gone.begin(), patch.gone.end(), [&](std::size_t k) { return is_near(frozen[k].line); }) &&
          std::all_of(patch.appeared.begin(), patch.appeared.end(),

@@ -17,8 +17,19 @@ struct LinesInBoxes
 {
   std::vector<fmm::LineSource> lines; ///< those of the system in its order, then what corrects changes of topology
   std::vector<std::uint32_t> box;
-  double displacement = 0;     ///< rms over the ends of the lines, nm
+  /// Part of the lines' last motion (see FrozenLines::continued()) that their motion since is nearest to.
+  double ahead = 0;
+  double displacement = 0;     ///< rms over the ends of the lines of what `ahead` leaves of it, nm
+  double curvature = 0;        ///< rms of the last motion squared times ahead (1 + ahead), nm^2
+  double farthest = 0;         ///< middle of a line outside its box, in box sizes
   bool in_system_frame = true; ///< all lines are the images that the system has
+
+  /// For new moments, which hold every one of the @p n_lines lines of the system in its box.
+  void drop_corrections(const std::size_t n_lines)
+  {
+    lines.resize(n_lines);
+    box.resize(n_lines);
+  }
 };
 
 /**
@@ -34,6 +45,9 @@ public:
   /// @p tree: of the lines of @p system.
   FrozenLines(const Network &network, const LineSystem &system, const fmm::Octree &tree);
 
+  /// The lines as @p placed by this object, with their motion since this time.
+  FrozenLines continued(const Network &network, const LinesInBoxes &placed) const;
+
   /// Lines of the network as it is now in the boxes of @p tree; empty if one is too far from its box, or none that it came
   /// from is known.
   std::optional<LinesInBoxes> place(const Network &network, const LineSystem &system, const fmm::Octree &tree) const;
@@ -44,12 +58,15 @@ private:
     ObjectId id, start_node, end_node;
     StraightLine line;
     std::uint32_t box;
+    Vec3 start_motion = Vec3::Zero(), end_motion = Vec3::Zero(); ///< before, nm
   };
   struct Patch
   {
     std::vector<std::size_t> gone, appeared; ///< numbers of frozen lines, and of lines of the system
   };
 
+  FrozenLines() = default;
+  void sort();
   const Line *find(const Network &network, SegmentIndex s) const;
   std::vector<Patch> patches(const Network &network, const std::vector<std::uint8_t> &is_here,
                              const std::vector<std::size_t> &appeared) const;

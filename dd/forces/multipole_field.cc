@@ -76,9 +76,16 @@ void MultipoleField::move(const LineSystem &now, const std::span<const Vec3> poi
   expansions->move(lines.lines, lines.box, points, leaf_of_point);
 }
 
-std::vector<SymTensor> MultipoleField::stress_with_kept_far_field(MPI_Comm comm)
+std::vector<SymTensor> MultipoleField::stress_with_kept_far_field(MPI_Comm comm, const double ahead)
 {
-  std::vector<SymTensor> values = expansions->stress_with_kept_far_field(comm, fmm::Part::all, 1);
+  std::vector<SymTensor> values = expansions->stress_with_kept_far_field(comm, {.ahead = ahead});
+  add_distant_images(values);
+  return values;
+}
+
+std::vector<SymTensor> MultipoleField::stress_with_new_far_field(MPI_Comm comm)
+{
+  std::vector<SymTensor> values = expansions->stress_with_new_far_field(comm);
   add_distant_images(values);
   return values;
 }

@@ -60,8 +60,11 @@ public:
   /// its order, then others. For systems without rays.
   void move(const LineSystem &now, std::span<const Vec3> points_now, const LinesInBoxes &lines,
             std::span<const std::uint32_t> leaf_of_point);
-  /// As stress() after move(): what distant boxes add is that of the last stress(). Collective.
-  std::vector<SymTensor> stress_with_kept_far_field(MPI_Comm comm);
+  /// As stress() after move(); what distant boxes add is that of the last time, extrapolated by @p ahead times its change before.
+  /// Collective.
+  std::vector<SymTensor> stress_with_kept_far_field(MPI_Comm comm, double ahead);
+  /// The same with a new far field; the last one is kept for extrapolation.
+  std::vector<SymTensor> stress_with_new_far_field(MPI_Comm comm);
   /// Stress of the images beyond the 26 neighbours at point number @p i, MPa.
   SymTensor stress_of_distant_images(std::size_t i) const;
 
