@@ -7,6 +7,7 @@
 #include <cmath>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace ddfem::fmm
@@ -143,9 +144,9 @@ public:
       earlier.add_to(result, box, -ahead);
   }
 
-  void keep_local() override
+  void swap_local() override
   {
-    earlier = local;
+    std::swap(local, earlier);
   }
 
 private:
@@ -252,7 +253,7 @@ private:
   FarTranslations<Scalar> across;
   std::vector<BasicTranslation<Scalar>> to_parent, to_child;
   Expansions<Scalar> multipole, local;
-  Expansions<Scalar> earlier; ///< local ones, see keep_local()
+  Expansions<Scalar> earlier; ///< local ones
 };
 
 template <class Scalar>

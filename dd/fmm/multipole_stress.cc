@@ -169,4 +169,11 @@ std::vector<SymTensor> MultipoleStress::stress_with_new_far_field(MPI_Comm comm)
   compute_again(comm, Part::all);
   return in_given_order<SymTensor>();
 }
+
+void MultipoleStress::set_earlier(std::vector<LineSource> lines)
+{
+  sources.swap(lines);
+  compute_earlier();
+  sources.swap(lines);
+}
 } // namespace ddfem::fmm

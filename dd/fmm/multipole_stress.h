@@ -29,6 +29,8 @@ public:
   std::vector<SymTensor> stress_with_kept_far_field(MPI_Comm comm, const KeptExpansions &use);
   /// The same with a new far field; the last one is kept for extrapolation.
   std::vector<SymTensor> stress_with_new_far_field(MPI_Comm comm);
+  /// Replaces the far field that was kept for extrapolation by that of the same lines at other places, in the order of lines().
+  void set_earlier(std::vector<LineSource> lines);
 
   /// The lines in the order of the tree.
   const std::vector<LineSource> &lines() const { return sources; }

@@ -177,9 +177,16 @@ void MultipoleSum::compute(MPI_Comm comm, const Part part)
 
 void MultipoleSum::compute_again(MPI_Comm comm, const Part part)
 {
-  passes->keep_local();
+  passes->swap_local();
   far_passes();
   evaluate(comm, {.part = part});
+}
+
+void MultipoleSum::compute_earlier()
+{
+  passes->swap_local();
+  far_passes();
+  passes->swap_local();
 }
 
 void MultipoleSum::evaluate(MPI_Comm comm, const KeptExpansions &use)

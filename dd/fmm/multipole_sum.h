@@ -83,8 +83,10 @@ protected:
   /// Puts other sources and points into the boxes, see Octree::move(); local expansions stay those of the last compute().
   void move(std::span<const SourceExtent> sources, std::span<const std::uint32_t> box_of_source,
             std::span<const Vec3> points, std::span<const std::uint32_t> leaf_of_point);
-  /// As compute() after move(), with the shares of the last time; keeps its local expansions for extrapolation.
+  /// As compute() after move(), with the shares of the last time, whose local expansions become the earlier ones.
   void compute_again(MPI_Comm comm, Part part);
+  /// Makes the earlier local expansions those of the moments as they are now.
+  void compute_earlier();
   /// Evaluates the local expansions of the last compute() and what acts directly. Collective, with the shares of that time.
   void evaluate(MPI_Comm comm, const KeptExpansions &use);
   /// Values at the points in the order given.

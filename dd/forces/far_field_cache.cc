@@ -16,6 +16,10 @@ constexpr double farthest_in_same_tree = 0.1;
 constexpr double largest_change = 0.1;
 /// The displacement up to which a measured growth of the error is trusted, in those it was measured at.
 constexpr double trusted_growth = 2;
+/// Displacement by which the second order of a motion acts, relative to its square in sizes of the smallest box (measured).
+constexpr double curvature_weight = 0.1;
+/// Part of the allowed displacement by which changes of topology may be taken for motion.
+constexpr double negligible_jump = 0.05;
 /// Leaves in which errors are measured: a sixteenth, but some in small trees.
 constexpr std::size_t largest_stride = 16, fewest_leaves = 32;
 
@@ -24,6 +28,15 @@ FarFieldCache::Field fresh(const FieldRequest &r, const fmm::Part part)
   auto field = std::make_shared<MultipoleField>(r.system, r.points, r.settings);
   std::vector<SymTensor> stress = field->stress(r.comm, part);
   return {std::move(field), std::move(stress)};
+}
+
+std::vector<fmm::LineSource> sources_of(const LineSystem &system)
+{
+  std::vector<fmm::LineSource> sources;
+  sources.reserve(system.lines().size());
+  for (const StraightLine &l : system.lines())
+    sources.push_back({l.start, l.end, l.burgers});
+  return sources;
 }
 
 /// Images of the lines beyond the neighbours, for the images of lines that act in the tree.
@@ -81,7 +94,8 @@ std::optional<FarFieldCache::Placement> FarFieldCache::place(const FieldRequest 
 double FarFieldCache::displacement_of(const Placement &placement) const
 {
   const fmm::Octree &tree = kept->field->sum().octree();
-  return placement.lines.displacement + placement.lines.curvature / tree.size(tree.boxes().back());
+  const LinesInBoxes &l = placement.lines;
+  return std::hypot(l.displacement, l.jump) + curvature_weight * l.curvature / tree.size(tree.boxes().back());
 }
 
 double FarFieldCache::tolerated_error(const FieldRequest &request) const
@@ -89,9 +103,9 @@ double FarFieldCache::tolerated_error(const FieldRequest &request) const
   return settings.share_of_tolerance * request.settings.tolerance;
 }
 
-double FarFieldCache::allowed_displacement(const FieldRequest &request, const Placement &placement)
+double FarFieldCache::allowed_displacement(const FieldRequest &request) const
 {
-  return growth_of(placement).allowed(tolerated_error(request));
+  return growth.allowed(tolerated_error(request));
 }
 
 double FarFieldCache::Growth::allowed(const double tolerated) const
@@ -105,8 +119,11 @@ void FarFieldCache::Growth::learn(const double tolerated, const double error, co
     return;
   const double before = allowed(tolerated);
   // What small errors consist of besides need not grow: they only bound the rate from above.
-  if (rate == 0 || error > 0.5 * tolerated || error < rate * displacement)
-    rate = error / displacement;
+  const double measured = error / displacement;
+  if (rate == 0 || error > 0.5 * tolerated)
+    rate = measured;
+  else
+    rate = std::clamp(measured, 0.5 * rate, rate);
   trusted = trusted_growth * std::max(displacement, before);
 }
 
@@ -117,13 +134,12 @@ bool FarFieldCache::is_due(const FieldRequest &request, const Placement &placeme
     return kept->n_steps >= settings.interval;
   // All of the step that begins should use one far field. Its displacement grows by about half more than in the last one.
   const double now = displacement_of(placement), last_step = now - std::exchange(kept->at_last_start, now);
-  return now + 1.5 * std::max(0.0, last_step) > allowed_displacement(request, placement);
+  return now + 1.5 * std::max(0.0, last_step) > allowed_displacement(request);
 }
 
-bool FarFieldCache::is_allowed(const FieldRequest &request, const Placement &placement)
+bool FarFieldCache::is_allowed(const FieldRequest &request, const Placement &placement) const
 {
-  return settings.mode == FarFieldRefresh::every_n_steps ||
-         displacement_of(placement) <= allowed_displacement(request, placement);
+  return settings.mode == FarFieldRefresh::every_n_steps || displacement_of(placement) <= allowed_displacement(request);
 }
 
 bool FarFieldCache::tree_is_good(const std::optional<Placement> &placement, const std::size_t n_lines) const
@@ -144,12 +160,19 @@ FarFieldCache::Field FarFieldCache::refresh(const FieldRequest &request, std::op
 FarFieldCache::Field FarFieldCache::refresh_in_new_tree(const FieldRequest &request)
 {
   ++n.trees;
+  const std::unique_ptr<Kept> before = std::move(kept);
   Field result = fresh(request, fmm::Part::all);
-  kept.reset();
-  if (request.system.rays().empty() && settings.mode != FarFieldRefresh::every_evaluation)
-    kept = std::make_unique<Kept>(Kept{result.field,
-                                       FrozenLines(request.network, request.system, result.field->sum().octree()),
-                                       request.system.lines().size()});
+  if (!request.system.rays().empty() || settings.mode == FarFieldRefresh::every_evaluation)
+    return result;
+  const std::vector<fmm::LineSource> lines = sources_of(request.system);
+  kept = std::make_unique<Kept>(Kept{result.field,
+                                     {request.network, lines, result.field->sum().octree().boxes_of_lines(),
+                                      before ? &before->lines : nullptr, request.system.cell()},
+                                     lines.size()});
+  if (before && settings.mode == FarFieldRefresh::adaptive)
+    result.field->set_earlier(kept->lines.earlier(request.network, lines));
+  else
+    kept->lines.forget_motion();
   return result;
 }
 
@@ -165,8 +188,10 @@ FarFieldCache::Field FarFieldCache::refresh_in_same_tree(const FieldRequest &req
   };
   const std::vector<SymTensor> far = in_sample(fmm::Part::far), close = in_sample(fmm::Part::near);
 
-  FrozenLines lines = kept->lines.continued(request.network, placement.lines);
+  const bool has_jumped = placement.lines.has_corrections(request.system.lines().size()) ||
+                          placement.lines.jump > negligible_jump * allowed_displacement(request);
   placement.lines.drop_corrections(request.system.lines().size());
+  FrozenLines lines(request.network, placement.lines.lines, placement.lines.box, &kept->lines, request.system.cell());
   move(request, placement);
   std::vector<SymTensor> stress = field.stress_with_new_far_field(request.comm);
   double difference = 0, scale = 0;
@@ -176,7 +201,10 @@ FarFieldCache::Field FarFieldCache::refresh_in_same_tree(const FieldRequest &req
     scale += far[i].squaredNorm();
   }
   error = scale > 0 ? std::sqrt(difference / scale) : 0.0;
-  growth_of(placement).learn(tolerated_error(request), error, displacement);
+  growth.learn(tolerated_error(request), error, displacement);
+  // The far field before holds other lines: without the changes of topology, motion remains.
+  if (has_jumped)
+    field.set_earlier(lines.earlier(request.network, placement.lines.lines));
   kept = std::make_unique<Kept>(Kept{kept->field, std::move(lines), kept->n_lines});
   return {kept->field, std::move(stress)};
 }

@@ -6,7 +6,6 @@
 
 #include <mpi.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -106,11 +105,11 @@ private:
 
   std::optional<Placement> place(const FieldRequest &request) const;
   double displacement_of(const Placement &placement) const;
-  Growth &growth_of(const Placement &placement) { return growth[placement.lines.ahead > 0 ? 1 : 0]; }
+
   double tolerated_error(const FieldRequest &request) const;
-  double allowed_displacement(const FieldRequest &request, const Placement &placement);
+  double allowed_displacement(const FieldRequest &request) const;
   bool is_due(const FieldRequest &request, const Placement &placement);
-  bool is_allowed(const FieldRequest &request, const Placement &placement);
+  bool is_allowed(const FieldRequest &request, const Placement &placement) const;
   bool tree_is_good(const std::optional<Placement> &placement, std::size_t n_lines) const;
   Field refresh(const FieldRequest &request, std::optional<Placement> placement);
   Field refresh_in_new_tree(const FieldRequest &request);
@@ -120,7 +119,7 @@ private:
   RefreshSettings settings;
   std::unique_ptr<Kept> kept;
   bool at_start_of_step = false;
-  std::array<Growth, 2> growth; ///< without and with extrapolation
+  Growth growth;
   double error = 0, displacement = 0;
   Counts n;
 };

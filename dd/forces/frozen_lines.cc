@@ -13,6 +13,10 @@ namespace
 constexpr double farthest_of_box = 0.25, farthest_of_cell = 0.05;
 /// In motions before.
 constexpr double farthest_ahead = 10;
+/// How far the end of a line may be from where it was foreseen, in mean lengths of lines. A line of another box that ends there is
+/// distant for some points and near for others: these see a gap.
+constexpr double longest_jump = 0.1;
+constexpr std::uint32_t no_box = 0xffffffffU;
 
 Vec3 middle(const StraightLine &l)
 {
@@ -37,30 +41,33 @@ bool stays(const Vec3 &x, const std::uint32_t box, const PeriodicCell *const cel
   return outside <= farthest_of_box * size && (!cell || outside <= farthest_of_cell * cell->lengths.minCoeff());
 }
 
-/// Motion of the ends of all lines, compared with the one before.
-class Motion
+/// Areas that all lines sweep, compared with those before. They add up at random: by the squares.
+class SweptAreas
 {
 public:
-  void add(const Vec3 &now, const Vec3 &before)
+  void add(const double length, const Vec3 &now, const Vec3 &before)
   {
-    now_now += now.squaredNorm();
     now_before += now.dot(before);
     before_before += before.squaredNorm();
+    total_length += length;
     n += 1;
   }
-  void finish(LinesInBoxes &placed) const
+  double ahead() const { return before_before > 0 ? std::clamp(now_before / before_before, 0.0, farthest_ahead) : 0.0; }
+  double curvature() const
   {
-    if (n == 0)
-      return;
-    const double t = before_before > 0 ? std::clamp(now_before / before_before, 0.0, farthest_ahead) : 0.0;
-    const double left = now_now - 2 * t * now_before + t * t * before_before;
-    placed.ahead = t;
-    placed.displacement = std::sqrt(std::max(0.0, left / n));
-    placed.curvature = t * (1 + t) * before_before / n;
+    const double before = displacement(before_before);
+    return ahead() * (1 + ahead()) * before * before;
   }
+  /// Of all lines, that sweeps areas with this sum of squares (nm^4), nm.
+  double displacement(const double squares) const
+  {
+    return total_length > 0 ? std::sqrt(std::max(0.0, squares) * n) / total_length : 0.0;
+  }
+  double mean_length() const { return n > 0 ? total_length / n : 0.0; }
 
 private:
-  double now_now = 0, now_before = 0, before_before = 0, n = 0; ///< sums of products, nm^2; number
+  double now_before = 0, before_before = 0; ///< sums of products, nm^4
+  double total_length = 0, n = 0;           ///< of the lines, nm; number
 };
 
 fmm::LineSource moved(const StraightLine &l, const Vec3 &shift, const double sign = 1)
@@ -94,47 +101,80 @@ private:
 };
 } // namespace
 
-FrozenLines::FrozenLines(const Network &network, const LineSystem &system, const fmm::Octree &tree)
+FrozenLines::FrozenLines(const Network &network, const std::span<const fmm::LineSource> lines,
+                         const std::span<const std::uint32_t> box, const FrozenLines *const before,
+                         const PeriodicCell *const cell)
 {
-  const std::vector<std::uint32_t> boxes = tree.boxes_of_lines();
+  frozen.reserve(network.n_segments());
+  std::vector<std::size_t> appeared;
   for (std::size_t i = 0; const SegmentIndex s : network.segments())
   {
-    frozen.push_back({network.id(s), network.id(network.start(s)), network.id(network.end(s)), system.lines()[i],
-                      boxes[i], Vec3::Zero(), Vec3::Zero()});
-    ++i;
-  }
-  sort();
-}
-
-void FrozenLines::sort()
-{
-  std::sort(frozen.begin(), frozen.end(), [](const Line &a, const Line &b) { return a.id < b.id; });
-}
-
-FrozenLines FrozenLines::continued(const Network &network, const LinesInBoxes &placed) const
-{
-  FrozenLines now;
-  for (std::size_t i = 0; const SegmentIndex s : network.segments())
-  {
-    const fmm::LineSource &l = placed.lines[i];
     Line line{network.id(s),
               network.id(network.start(s)),
               network.id(network.end(s)),
-              {l.start, l.end, l.burgers},
-              placed.box[i],
+              {lines[i].start, lines[i].end, lines[i].burgers},
+              box[i],
               Vec3::Zero(),
               Vec3::Zero()};
-    // Lines that have changed their box belong to other expansions: their change is no motion.
-    if (const Line *const old = find(network, s); old && placed.lines.size() == network.n_segments())
+    if (const Line *const old = before ? before->find(network, s) : nullptr)
     {
-      line.start_motion = l.start - old->line.start;
-      line.end_motion = l.end - old->line.end;
+      const Vec3 shift = shift_towards(cell, middle(line.line), middle(old->line));
+      line.start_motion = line.line.start + shift - old->line.start;
+      line.end_motion = line.line.end + shift - old->line.end;
     }
-    now.frozen.push_back(line);
+    else
+      appeared.push_back(i);
+    frozen.push_back(line);
     ++i;
   }
-  now.sort();
-  return now;
+  if (before)
+    join_motion(appeared);
+  std::sort(frozen.begin(), frozen.end(), [](const Line &a, const Line &b) { return a.id < b.id; });
+}
+
+/// Lines that have @p appeared move with the ends of their neighbours: with a gap between the two, the field before would have
+/// lines that end there.
+void FrozenLines::join_motion(const std::span<const std::size_t> appeared)
+{
+  std::unordered_map<ObjectId, Vec3> motion_of;
+  for (const std::size_t i : appeared)
+    for (const ObjectId node : {frozen[i].start_node, frozen[i].end_node})
+      motion_of.emplace(node, Vec3::Zero());
+  const auto note = [&](const ObjectId node, const Vec3 &motion)
+  {
+    if (const auto found = motion_of.find(node); found != motion_of.end() && !motion.isZero(0))
+      found->second = motion;
+  };
+  for (const Line &line : frozen)
+  {
+    note(line.start_node, line.start_motion);
+    note(line.end_node, line.end_motion);
+  }
+  for (const std::size_t i : appeared)
+  {
+    frozen[i].start_motion = motion_of.at(frozen[i].start_node);
+    frozen[i].end_motion = motion_of.at(frozen[i].end_node);
+  }
+}
+
+void FrozenLines::forget_motion()
+{
+  for (Line &line : frozen)
+    line.start_motion = line.end_motion = Vec3::Zero();
+}
+
+std::vector<fmm::LineSource> FrozenLines::earlier(const Network &network,
+                                                  const std::span<const fmm::LineSource> lines) const
+{
+  std::vector<fmm::LineSource> result(lines.begin(), lines.end());
+  for (std::size_t i = 0; const SegmentIndex s : network.segments())
+  {
+    const Line &line = *find(network, s);
+    result[i].start -= line.start_motion;
+    result[i].end -= line.end_motion;
+    ++i;
+  }
+  return result;
 }
 
 /// The same line at the time of the far field; null if it is new or has another Burgers vector.
@@ -148,41 +188,81 @@ const FrozenLines::Line *FrozenLines::find(const Network &network, const Segment
 std::optional<LinesInBoxes> FrozenLines::place(const Network &network, const LineSystem &system,
                                                const fmm::Octree &tree) const
 {
-  LinesInBoxes placed;
-  placed.lines.resize(system.lines().size());
-  placed.box.resize(system.lines().size());
-  std::vector<std::uint8_t> is_here(frozen.size(), 0);
-  std::vector<std::size_t> appeared;
-  Motion motion;
+  std::vector<const Line *> known;
+  SweptAreas areas;
   for (std::size_t i = 0; const SegmentIndex s : network.segments())
   {
-    const StraightLine &l = system.lines()[i];
-    if (const Line *const old = find(network, s))
+    known.push_back(find(network, s));
+    if (const Line *const old = known.back())
     {
-      const Vec3 shift = shift_towards(system.cell(), middle(l), middle(old->line));
-      placed.lines[i] = moved(l, shift);
-      placed.box[i] = old->box;
-      placed.in_system_frame = placed.in_system_frame && shift.isZero(0);
-      motion.add(l.start + shift - old->line.start, old->start_motion);
-      motion.add(l.end + shift - old->line.end, old->end_motion);
-      is_here[static_cast<std::size_t>(old - frozen.data())] = 1;
-      if (!stays(middle(l) + shift, old->box, system.cell(), tree, placed.farthest))
-        return {};
+      const Motion motion = motion_of(*old, system.lines()[i], system.cell());
+      const Vec3 t = old->line.end - old->line.start;
+      areas.add(t.norm(), motion.area(t), Motion{old->start_motion, old->end_motion}.area(t));
     }
-    else
-      appeared.push_back(i);
     ++i;
   }
-  motion.finish(placed);
-  for (const Patch &p : patches(network, is_here, appeared))
-    if (!place_patch(p, system, tree, placed))
+  LinesInBoxes placed;
+  placed.ahead = areas.ahead();
+  placed.curvature = areas.curvature();
+  std::vector<std::uint8_t> is_here(frozen.size(), 0);
+  double squares = 0;
+  if (!place_known(known, longest_jump * areas.mean_length(), system, tree, placed, is_here, squares))
+    return {};
+  placed.displacement = areas.displacement(squares);
+  double swept2 = 0;
+  for (const Patch &p : patches(network, is_here, placed))
+    if (double swept = 0; place_patch(p, system, tree, placed, swept))
+      swept2 += swept * swept;
+    else
       return {};
+  placed.jump = areas.displacement(swept2);
   return placed;
 }
 
-std::vector<FrozenLines::Patch> FrozenLines::patches(const Network &network, const std::vector<std::uint8_t> &is_here,
-                                                     const std::vector<std::size_t> &appeared) const
+/// Motion since, as if the cell had no boundaries.
+FrozenLines::Motion FrozenLines::motion_of(const Line &old, const StraightLine &now, const PeriodicCell *const cell)
 {
+  const Vec3 shift = shift_towards(cell, middle(now), middle(old.line));
+  return {now.start + shift - old.line.start, now.end + shift - old.line.end};
+}
+
+/// Puts lines that have moved on, by less than @p limit (nm) besides, into their boxes; others get no box. @p is_here: which of the
+/// frozen ones these are. @p squares: sum over them of squares of swept areas, less those foreseen.
+bool FrozenLines::place_known(const std::vector<const Line *> &known, const double limit, const LineSystem &system,
+                              const fmm::Octree &tree, LinesInBoxes &placed, std::vector<std::uint8_t> &is_here,
+                              double &squares) const
+{
+  placed.lines.resize(known.size());
+  placed.box.assign(known.size(), no_box);
+  for (std::size_t i = 0; i < known.size(); ++i)
+    if (known[i])
+    {
+      const Line &old = *known[i];
+      const StraightLine &l = system.lines()[i];
+      Motion rest = motion_of(old, l, system.cell());
+      rest.start -= placed.ahead * old.start_motion;
+      rest.end -= placed.ahead * old.end_motion;
+      if (std::max(rest.start.norm(), rest.end.norm()) > limit)
+        continue;
+      const Vec3 shift = shift_towards(system.cell(), middle(l), middle(old.line));
+      placed.lines[i] = moved(l, shift);
+      placed.box[i] = old.box;
+      placed.in_system_frame = placed.in_system_frame && shift.isZero(0);
+      is_here[static_cast<std::size_t>(&old - frozen.data())] = 1;
+      squares += rest.area(old.line.end - old.line.start).squaredNorm();
+      if (!stays(middle(l) + shift, old.box, system.cell(), tree, placed.farthest))
+        return false;
+    }
+  return true;
+}
+
+std::vector<FrozenLines::Patch> FrozenLines::patches(const Network &network, const std::vector<std::uint8_t> &is_here,
+                                                     const LinesInBoxes &placed) const
+{
+  std::vector<std::size_t> appeared;
+  for (std::size_t i = 0; i < placed.box.size(); ++i)
+    if (placed.box[i] == no_box)
+      appeared.push_back(i);
   NodeGroups groups;
   for (std::size_t k = 0; k < frozen.size(); ++k)
     if (is_here[k] == 0)
@@ -200,6 +280,12 @@ std::vector<FrozenLines::Patch> FrozenLines::patches(const Network &network, con
   return of_group;
 }
 
+/// A line where the far field has it.
+StraightLine FrozenLines::extrapolated(const Line &l, const double ahead)
+{
+  return {l.line.start + ahead * l.start_motion, l.line.end + ahead * l.end_motion, l.line.burgers};
+}
+
 bool FrozenLines::fits(const Patch &patch, const Line &host, const LineSystem &system, const fmm::Octree &tree) const
 {
   const auto is_near = [&](const StraightLine &l)
@@ -214,7 +300,7 @@ bool FrozenLines::fits(const Patch &patch, const Line &host, const LineSystem &s
 }
 
 bool FrozenLines::place_patch(const Patch &patch, const LineSystem &system, const fmm::Octree &tree,
-                              LinesInBoxes &placed) const
+                              LinesInBoxes &placed, double &swept) const
 {
   const auto found = std::find_if(patch.gone.begin(), patch.gone.end(),
                                   [&](std::size_t k) { return fits(patch, frozen[k], system, tree); });
@@ -235,11 +321,33 @@ bool FrozenLines::place_patch(const Patch &patch, const LineSystem &system, cons
   for (const std::size_t k : patch.gone)
     if (const Vec3 shift = shift_of(frozen[k].line); frozen[k].box != host.box || !shift.isZero(0))
     {
-      placed.lines.push_back(moved(frozen[k].line, Vec3::Zero()));
+      const StraightLine gone = extrapolated(frozen[k], placed.ahead);
+      placed.lines.push_back(moved(gone, Vec3::Zero()));
       placed.box.push_back(frozen[k].box);
-      placed.lines.push_back(moved(frozen[k].line, shift, -1));
+      placed.lines.push_back(moved(gone, shift, -1));
       placed.box.push_back(host.box);
     }
+  swept = area_swept_by(patch, host, system, placed.ahead);
   return true;
+}
+
+/// Area of the loops between the lines of a patch now and where those before would be, by their moment, nm^2.
+double FrozenLines::area_swept_by(const Patch &patch, const Line &host, const LineSystem &system,
+                                  const double ahead) const
+{
+  const Vec3 centre = middle(host.line);
+  Mat3 moment = Mat3::Zero();
+  double largest = 0; // Burgers vector
+  const auto add = [&](const StraightLine &l, const double sign)
+  {
+    const Vec3 start = l.start + shift_towards(system.cell(), middle(l), centre) - centre;
+    moment += 0.5 * sign * l.burgers * start.cross(Vec3(l.end - l.start)).transpose();
+    largest = std::max(largest, l.burgers.norm());
+  };
+  for (const std::size_t k : patch.gone)
+    add(extrapolated(frozen[k], ahead), -1);
+  for (const std::size_t i : patch.appeared)
+    add(system.lines()[i], 1);
+  return largest > 0 ? moment.norm() / largest : 0.0;
 }
 } // namespace ddfem

@@ -89,4 +89,13 @@ std::vector<SymTensor> MultipoleField::stress_with_new_far_field(MPI_Comm comm)
   add_distant_images(values);
   return values;
 }
+
+void MultipoleField::set_earlier(const std::vector<fmm::LineSource> &lines)
+{
+  std::vector<fmm::LineSource> in_order;
+  in_order.reserve(lines.size());
+  for (const std::uint32_t i : expansions->octree().line_order())
+    in_order.push_back(lines[i]);
+  expansions->set_earlier(std::move(in_order));
+}
 } // namespace ddfem

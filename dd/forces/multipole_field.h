@@ -65,6 +65,8 @@ public:
   std::vector<SymTensor> stress_with_kept_far_field(MPI_Comm comm, double ahead);
   /// The same with a new far field; the last one is kept for extrapolation.
   std::vector<SymTensor> stress_with_new_far_field(MPI_Comm comm);
+  /// See fmm::MultipoleStress::set_earlier(); @p lines in the order given last.
+  void set_earlier(const std::vector<fmm::LineSource> &lines);
   /// Stress of the images beyond the 26 neighbours at point number @p i, MPa.
   SymTensor stress_of_distant_images(std::size_t i) const;
 
