@@ -17,7 +17,7 @@ constexpr double largest_change = 0.1;
 /// The displacement up to which a measured growth of the error is trusted, in those it was measured at.
 constexpr double trusted_growth = 2;
 /// Displacement by which the second order of a motion acts, relative to its square in sizes of the smallest box (measured).
-constexpr double curvature_weight = 0.1;
+constexpr double curvature_weight = 2;
 /// Part of the allowed displacement by which changes of topology may be taken for motion.
 constexpr double negligible_jump = 0.05;
 /// Leaves in which errors are measured: a sixteenth, but some in small trees.
