@@ -7,6 +7,7 @@
 #include "dd/crystal/orientation.h"
 #include "dd/crystal/slip_systems.h"
 #include "dd/elasticity/isotropic.h"
+#include "dd/forces/far_field_cache.h"
 #include "dd/forces/nodal_forces.h"
 #include "dd/geometry/periodic_cell.h"
 #include "dd/integrators/stabilised_runge_kutta.h"

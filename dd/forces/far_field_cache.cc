@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace ddfem
@@ -10,6 +11,8 @@ namespace
 {
 /// How far a point may lie outside its leaf, in sizes of the leaf: local expansions converge less and less there.
 constexpr double farthest_of_leaf = 0.1;
+/// See FrozenLines::place().
+constexpr double longest_jump = 0.01;
 /// How far the middle of a line may lie outside its box, in box sizes, when the moments of the box are computed again.
 constexpr double farthest_in_same_tree = 0.1;
 /// Change of the number of lines after which a tree is made anew.
@@ -37,6 +40,21 @@ std::vector<fmm::LineSource> sources_of(const LineSystem &system)
   for (const StraightLine &l : system.lines())
     sources.push_back({l.start, l.end, l.burgers});
   return sources;
+}
+
+/// Finds the leaf of a point. @p x: moved to the image that is near one, where it has left the cell. Returns whether it is.
+bool place_point(const fmm::Octree &tree, Vec3 &x, std::uint32_t &leaf)
+{
+  for (const Vec3 &shift : tree.image_shifts())
+  {
+    leaf = tree.leaf_at(x + shift);
+    if (tree.distance_outside(leaf, x + shift) <= farthest_of_leaf * tree.size(tree.boxes()[leaf]))
+    {
+      x += shift;
+      return true;
+    }
+  }
+  return false;
 }
 
 /// Images of the lines beyond the neighbours, for the images of lines that act in the tree.
@@ -73,17 +91,20 @@ std::optional<FarFieldCache::Placement> FarFieldCache::place(const FieldRequest 
   if (!kept || settings.mode == FarFieldRefresh::every_evaluation || !request.system.rays().empty())
     return {};
   const fmm::Octree &tree = kept->field->sum().octree();
-  auto lines = kept->lines.place(request.network, request.system, tree);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  auto lines = kept->lines.place(request.network, request.system, tree,
+                                 settings.mode == FarFieldRefresh::adaptive ? longest_jump : infinity);
   if (!lines)
     return {};
-  Placement placement{std::move(*lines), std::vector<std::uint32_t>(request.points.size())};
+  Placement placement{std::move(*lines), {request.points.begin(), request.points.end()}, {}};
+  placement.leaf_of_point.resize(request.points.size());
   bool all_near = true;
 #pragma omp parallel for schedule(static) reduction(&& : all_near)
   for (std::size_t i = 0; i < request.points.size(); ++i)
   {
-    const Vec3 x = request.points[i] + request.system.shift_into_cell(request.points[i]);
-    const std::uint32_t leaf = placement.leaf_of_point[i] = tree.leaf_at(x);
-    all_near = all_near && tree.distance_outside(leaf, x) <= farthest_of_leaf * tree.size(tree.boxes()[leaf]);
+    Vec3 &x = placement.points[i];
+    x += request.system.shift_into_cell(x);
+    all_near = place_point(tree, x, placement.leaf_of_point[i]) && all_near;
   }
   if (!all_near)
     return {};
@@ -211,7 +232,7 @@ FarFieldCache::Field FarFieldCache::refresh_in_same_tree(const FieldRequest &req
 
 void FarFieldCache::move(const FieldRequest &request, const Placement &placement)
 {
-  kept->field->move(request.system, request.points, placement.lines, placement.leaf_of_point);
+  kept->field->move(request.system, placement.points, placement.lines, placement.leaf_of_point);
   if (request.images && !placement.lines.in_system_frame)
     set_images(request, placement.lines.lines);
 }

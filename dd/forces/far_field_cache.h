@@ -83,6 +83,7 @@ private:
   struct Placement
   {
     LinesInBoxes lines;
+    std::vector<Vec3> points; ///< their images in the boxes
     std::vector<std::uint32_t> leaf_of_point;
   };
   /// Of the error of the far field with the displacement.

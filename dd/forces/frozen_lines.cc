@@ -13,9 +13,6 @@ namespace
 constexpr double farthest_of_box = 0.25, farthest_of_cell = 0.05;
 /// In motions before.
 constexpr double farthest_ahead = 10;
-/// How far the end of a line may be from where it was foreseen, in mean lengths of lines. A line of another box that ends there is
-/// distant for some points and near for others: these see a gap.
-constexpr double longest_jump = 0.1;
 constexpr std::uint32_t no_box = 0xffffffffU;
 
 Vec3 middle(const StraightLine &l)
@@ -63,7 +60,6 @@ public:
   {
     return total_length > 0 ? std::sqrt(std::max(0.0, squares) * n) / total_length : 0.0;
   }
-  double mean_length() const { return n > 0 ? total_length / n : 0.0; }
 
 private:
   double now_before = 0, before_before = 0; ///< sums of products, nm^4
@@ -186,7 +182,7 @@ const FrozenLines::Line *FrozenLines::find(const Network &network, const Segment
 }
 
 std::optional<LinesInBoxes> FrozenLines::place(const Network &network, const LineSystem &system,
-                                               const fmm::Octree &tree) const
+                                               const fmm::Octree &tree, const double longest_jump) const
 {
   std::vector<const Line *> known;
   SweptAreas areas;
@@ -206,7 +202,7 @@ std::optional<LinesInBoxes> FrozenLines::place(const Network &network, const Lin
   placed.curvature = areas.curvature();
   std::vector<std::uint8_t> is_here(frozen.size(), 0);
   double squares = 0;
-  if (!place_known(known, longest_jump * areas.mean_length(), system, tree, placed, is_here, squares))
+  if (!place_known(known, longest_jump, system, tree, placed, is_here, squares))
     return {};
   placed.displacement = areas.displacement(squares);
   double swept2 = 0;
@@ -226,11 +222,11 @@ FrozenLines::Motion FrozenLines::motion_of(const Line &old, const StraightLine &
   return {now.start + shift - old.line.start, now.end + shift - old.line.end};
 }
 
-/// Puts lines that have moved on, by less than @p limit (nm) besides, into their boxes; others get no box. @p is_here: which of the
-/// frozen ones these are. @p squares: sum over them of squares of swept areas, less those foreseen.
-bool FrozenLines::place_known(const std::vector<const Line *> &known, const double limit, const LineSystem &system,
-                              const fmm::Octree &tree, LinesInBoxes &placed, std::vector<std::uint8_t> &is_here,
-                              double &squares) const
+/// Puts lines that have moved on, and by less than @p longest_jump (in box sizes) besides, into their boxes; others get no
+/// box. @p is_here: which of the frozen ones these are. @p squares: sum of squares of the areas they have swept besides.
+bool FrozenLines::place_known(const std::vector<const Line *> &known, const double longest_jump,
+                              const LineSystem &system, const fmm::Octree &tree, LinesInBoxes &placed,
+                              std::vector<std::uint8_t> &is_here, double &squares) const
 {
   placed.lines.resize(known.size());
   placed.box.assign(known.size(), no_box);
@@ -242,7 +238,7 @@ bool FrozenLines::place_known(const std::vector<const Line *> &known, const doub
       Motion rest = motion_of(old, l, system.cell());
       rest.start -= placed.ahead * old.start_motion;
       rest.end -= placed.ahead * old.end_motion;
-      if (std::max(rest.start.norm(), rest.end.norm()) > limit)
+      if (std::max(rest.start.norm(), rest.end.norm()) > longest_jump * tree.size(tree.boxes()[old.box]))
         continue;
       const Vec3 shift = shift_towards(system.cell(), middle(l), middle(old.line));
       placed.lines[i] = moved(l, shift);
@@ -317,6 +313,7 @@ bool FrozenLines::place_patch(const Patch &patch, const LineSystem &system, cons
   {
     placed.lines[i] = moved(system.lines()[i], shift_of(system.lines()[i]));
     placed.box[i] = host.box;
+    stays(0.5 * (placed.lines[i].start + placed.lines[i].end), host.box, system.cell(), tree, placed.farthest);
   }
   for (const std::size_t k : patch.gone)
     if (const Vec3 shift = shift_of(frozen[k].line); frozen[k].box != host.box || !shift.isZero(0))

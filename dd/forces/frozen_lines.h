@@ -53,8 +53,10 @@ public:
   std::vector<fmm::LineSource> earlier(const Network &network, std::span<const fmm::LineSource> lines) const;
 
   /// Lines of the network as it is now in the boxes of @p tree; empty if one is too far from its box, or none that it came
-  /// from is known.
-  std::optional<LinesInBoxes> place(const Network &network, const LineSystem &system, const fmm::Octree &tree) const;
+  /// from is known. @p longest_jump: of the end of a line from where it was foreseen, in box sizes; longer ones are changes of topology. A
+  /// line of another box that ends there is distant for some points for which this one is near: they see a gap.
+  std::optional<LinesInBoxes> place(const Network &network, const LineSystem &system, const fmm::Octree &tree,
+                                    double longest_jump) const;
 
 private:
   struct Line
@@ -77,7 +79,7 @@ private:
   };
 
   static Motion motion_of(const Line &old, const StraightLine &now, const PeriodicCell *cell);
-  bool place_known(const std::vector<const Line *> &known, double limit, const LineSystem &system,
+  bool place_known(const std::vector<const Line *> &known, double longest_jump, const LineSystem &system,
                    const fmm::Octree &tree, LinesInBoxes &placed, std::vector<std::uint8_t> &is_here,
                    double &squares) const;
   void join_motion(std::span<const std::size_t> appeared);

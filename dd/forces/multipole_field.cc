@@ -1,6 +1,7 @@
 #include "dd/forces/multipole_field.h"
 
 #include "dd/fmm/grids_and_rays.h"
+#include "dd/forces/frozen_lines.h"
 
 #include <algorithm>
 
@@ -72,7 +73,7 @@ void MultipoleField::move(const LineSystem &now, const std::span<const Vec3> poi
                           const std::span<const std::uint32_t> leaf_of_point)
 {
   system = &now;
-  take(points_now);
+  points.assign(points_now.begin(), points_now.end());
   expansions->move(lines.lines, lines.box, points, leaf_of_point);
 }
 

@@ -4,7 +4,6 @@
 #include "dd/elasticity/segment_force.h"
 #include "dd/elasticity/vectorised/force_kernels.h"
 #include "dd/fmm/multipole_stress.h"
-#include "dd/forces/frozen_lines.h"
 #include "dd/forces/line_system.h"
 
 #include <mpi.h>
@@ -16,6 +15,7 @@
 namespace ddfem
 {
 class FarFieldCache;
+struct LinesInBoxes;
 
 /// How the fields of many lines are summed.
 enum class SummationMethod : std::uint8_t
@@ -57,7 +57,7 @@ public:
   std::vector<SymTensor> stress(MPI_Comm comm, fmm::Part part = fmm::Part::all);
 
   /// Puts lines and points of another time into the boxes, see fmm::MultipoleStress::move(). @p lines: those of @p now in
-  /// its order, then others. For systems without rays.
+  /// its order, then others; @p points_now: the images that lie in the boxes. For systems without rays.
   void move(const LineSystem &now, std::span<const Vec3> points_now, const LinesInBoxes &lines,
             std::span<const std::uint32_t> leaf_of_point);
   /// As stress() after move(); what distant boxes add is that of the last time, extrapolated by @p ahead times its change before.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "dd/elasticity/segment_force.h"
-#include "dd/forces/far_field_cache.h"
 #include "dd/forces/line_system.h"
 #include "dd/forces/multipole_field.h"
 #include "dd/forces/segment_points.h"

@@ -1,4 +1,5 @@
 // The fast multipole method on several ranks.
+#include "dd/forces/far_field_cache.h"
 #include "dd/forces/nodal_forces.h"
 #include "tests/dd/fmm/systems_of_lines.h"
 
@@ -24,6 +25,32 @@ TEST(MultipoleRanks, ForcesAndStressesAreTheSameBitsOnAnyNumberOfRanks)
     points.push_back(500 * random.vector());
   const auto field = [&](MPI_Comm comm) { return MultipoleField(system, points, {1e-3}).stress(comm); };
   EXPECT_TRUE(field(MPI_COMM_SELF) == field(MPI_COMM_WORLD));
+}
+
+TEST(MultipoleRanks, AKeptFarFieldGivesTheSameBitsOnAnyNumberOfRanks)
+{
+  test::LinesOfTest lines = test::clustered_loops(150);
+  ForceSettings settings{test::copper_like, test::copper_like.a, 1e-4};
+  settings.summation.method = SummationMethod::multipole;
+  FarFieldCache cache_alone({FarFieldRefresh::adaptive}), cache_together({FarFieldRefresh::adaptive});
+  for (int step = 0; step < 6; ++step)
+  {
+    const auto forces = [&](FarFieldCache &cache, MPI_Comm comm)
+    {
+      cache.begin_step();
+      ForceEnvironment environment;
+      environment.far_field = &cache;
+      return compute_nodal_forces(lines.network, settings, environment, comm).total;
+    };
+    EXPECT_TRUE(forces(cache_alone, MPI_COMM_SELF) == forces(cache_together, MPI_COMM_WORLD)) << step;
+    for (const NodeIndex i : lines.network.nodes())
+    {
+      test::RandomVectors random(i.value + 1);
+      lines.network.set_position(i, lines.network.position(i) + 0.1 * random.vector());
+    }
+  }
+  EXPECT_GT(cache_together.counts().kept, 0U);
+  EXPECT_EQ(cache_together.counts().kept, cache_alone.counts().kept);
 }
 
 TEST(MultipoleRanks, MorePartsThanLeavesAreEmpty)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dd/crystal/slip_systems.h"
+#include "dd/forces/far_field_cache.h"
 #include "dd/forces/nodal_forces.h"
 #include "dd/integrators/stabilised_runge_kutta.h"
 #include "dd/mobility/linear_glide.h"
