@@ -57,8 +57,8 @@ std::size_t coarsest_far_level(const Octree &tree)
 } // namespace
 
 GridExpansions::GridExpansions(const IsotropicMedium &medium_, const int n_points, const Octree &tree_,
-                               const std::span<const LineSource> lines_, const double width)
-    : medium(medium_), grid(n_points, width), transform(grid.n()), tree(tree_), lines(lines_),
+                               const std::span<const LineSource> lines_)
+    : medium(medium_), grid(n_points), transform(grid.n()), tree(tree_), lines(lines_),
       coarsest(coarsest_far_level(tree_))
 {
   check_reach();

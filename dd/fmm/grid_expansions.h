@@ -27,8 +27,7 @@ public:
   /// @p lines: in the order of the tree (Octree::line_order()). Tree and lines must outlive the object. @throws
   /// std::invalid_argument unless fewest_grid_points <= @p n_points <= most_grid_points, and for a line that reaches too far out of
   /// a box with far links, which can be on level 0 only.
-  GridExpansions(const IsotropicMedium &medium, int n_points, const Octree &tree, std::span<const LineSource> lines,
-                 double width = grid_width);
+  GridExpansions(const IsotropicMedium &medium, int n_points, const Octree &tree, std::span<const LineSource> lines);
 
   /// Density on all grids, from the lines up; stress on all grids, by the far links and downward.
   void compute();

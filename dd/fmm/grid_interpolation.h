@@ -15,18 +15,15 @@
 
 namespace ddfem::fmm
 {
-/// Points per direction. With more, rounding outweighs what is gained (measured: docs/decisions.md, 57).
-inline constexpr int fewest_grid_points = 2, most_grid_points = 14;
-
-/// Edge of the grid over that of the box, chosen by measurement: lines stick out of their box by up to a quarter of it and are
-/// extrapolated (docs/decisions.md, 57).
-inline constexpr double grid_width = 1.0;
+/// Points per direction. With more, rounding outweighs what is gained: extrapolation multiplies it by a factor that grows with n
+/// (docs/decisions.md, 57).
+inline constexpr int fewest_grid_points = 2, most_grid_points = 16;
 
 /// Points per direction for a requested error of the far stress, relative to its rms. @throws std::invalid_argument unless
-/// 1e-7 <= @p tolerance <= 0.1.
+/// 1e-6 <= @p tolerance <= 0.1.
 int grid_points(double tolerance);
 
-/// What grid_points() inverts: the error that @p n points per direction are held to.
+/// The error that @p n points per direction stay below, on networks whose lines are up to half a box long (measured).
 double grid_error(int n);
 
 /// Polynomials of the points at one position: their values are products of one number per direction.
@@ -39,7 +36,7 @@ class GridInterpolation
 {
 public:
   /// @throws std::invalid_argument unless fewest_grid_points <= @p n <= most_grid_points.
-  explicit GridInterpolation(int n, double width = grid_width);
+  explicit GridInterpolation(int n);
 
   std::size_t n() const { return n_points; } ///< points per direction
   std::size_t n_rows() const { return n_points * n_points * n_points; }
@@ -66,7 +63,7 @@ private:
   void move(std::size_t octant, const std::array<std::vector<double>, 2> &matrices, const Row *from, Row *to) const;
 
   std::size_t n_points;
-  double width;
+  double width;              ///< of the grid, in box edges
   std::vector<double> scale; ///< 1/(product of the differences of point i to the others), in spacings
   /// For the lower and the upper half of the parent: values of parent's polynomial i on child's point j, and transposed.
   std::array<std::vector<double>, 2> to_parent, to_child;
