@@ -11,8 +11,8 @@ namespace
 {
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-/// Eight complex numbers.
-struct ComplexRow
+/// Eight complex numbers; a view of two rows.
+struct __attribute__((may_alias)) ComplexRow
 {
   Row re, im;
 };

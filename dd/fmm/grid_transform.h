@@ -10,8 +10,8 @@ namespace ddfem::fmm
 {
 /// Transforms of eight sets of real values side by side, from grids of n points per direction to the frequencies of the period
 /// 2n-1: cyclic convolutions of that period are the plain ones on the grid. Of each pair of conjugate frequencies
-/// along z one is kept. By dense matrices, direction by direction: the lengths are small and odd, most of the input is zero, and most of the
-/// output is not wanted.
+/// along z one is kept. By dense matrices, direction by direction: lengths are small and odd, most of the input is zero, most
+/// of the output is not wanted, and eight sets fill a vector (docs/decisions.md, 57).
 class GridTransform
 {
 public:
