@@ -17,18 +17,17 @@ namespace
 /// How far from the centre a line may reach, in box edges: a quarter out of the box, more where boxes are no cubes.
 constexpr double farthest_reach = 0.8;
 
-/// Adds the processor time since its start to phases, one after the other.
+/// Adds the processor time of a scope to a phase.
 class Stopwatch
 {
 public:
-  void lap(double &phase)
-  {
-    const std::clock_t now = std::clock();
-    phase += static_cast<double>(now - start) / CLOCKS_PER_SEC;
-    start = now;
-  }
+  explicit Stopwatch(double &phase_) : phase(phase_) {}
+  Stopwatch(const Stopwatch &) = delete;
+  Stopwatch &operator=(const Stopwatch &) = delete;
+  ~Stopwatch() { phase += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC; }
 
 private:
+  double &phase;
   std::clock_t start = std::clock();
 };
 
@@ -82,16 +81,12 @@ void GridExpansions::check_reach() const
 void GridExpansions::compute()
 {
   density = stress = RowBuffer(tree.boxes().size() * grid.n_rows());
-  Stopwatch watch;
   for (std::size_t level = tree.levels().size() - 1; level-- > coarsest;)
     add_up(level);
-  watch.lap(seconds.upward);
   for (std::size_t level = coarsest; level + 1 < tree.levels().size(); ++level)
     translate(level);
-  Stopwatch second_watch;
   for (std::size_t level = coarsest + 1; level + 1 < tree.levels().size(); ++level)
     add_down(level);
-  second_watch.lap(seconds.downward);
   density = RowBuffer();
 }
 
@@ -118,6 +113,7 @@ void GridExpansions::add_lines(const std::size_t index)
 
 void GridExpansions::add_up(const std::size_t level)
 {
+  const Stopwatch watch(seconds.upward);
 #pragma omp parallel for schedule(dynamic, 8)
   for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
   {
@@ -162,8 +158,21 @@ GridExpansions::Level GridExpansions::level_of(const std::size_t level) const
   return l;
 }
 
+GridKernel GridExpansions::kernel_of(Level &level)
+{
+  const Stopwatch watch(seconds.kernels);
+  const Vec3 edges = tree.edges(tree.boxes()[level.targets.front()]);
+  GridKernel kernel(transform, medium, grid.spacing(edges), edges, level.offsets);
+  std::size_t l = 0;
+  for (const std::uint32_t target : level.targets)
+    for (const FarLink &link : tree.far_links(target))
+      level.links[l++].kernel = kernel.number(link.offset);
+  return kernel;
+}
+
 Spectra GridExpansions::spectra_of_sources(const Level &level)
 {
+  const Stopwatch watch(seconds.transforms);
   Spectra spectra(transform.n_frequencies(), level.sources.size(), n_densities);
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t s = 0; s < level.sources.size(); ++s)
@@ -176,25 +185,19 @@ Spectra GridExpansions::spectra_of_sources(const Level &level)
   return spectra;
 }
 
-void GridExpansions::translate(const std::size_t level_number)
+Spectra GridExpansions::convolve_all(const Level &level, const Spectra &kernels, const Spectra &sources)
 {
-  Level level = level_of(level_number);
-  if (level.targets.empty())
-    return;
-  Stopwatch watch;
-  const Vec3 edges = tree.edges(tree.boxes()[level.targets.front()]);
-  const GridKernel kernel(transform, medium, grid.spacing(edges), edges, level.offsets);
-  for (std::size_t t = 0, l = 0; t < level.targets.size(); ++t)
-    for (const FarLink &link : tree.far_links(level.targets[t]))
-      level.links[l++].kernel = kernel.number(link.offset);
-  watch.lap(seconds.kernels);
-  const Spectra sources = spectra_of_sources(level);
-  watch.lap(seconds.transforms);
+  const Stopwatch watch(seconds.translations);
   Spectra targets(transform.n_frequencies(), level.targets.size(), n_stresses);
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t b = 0; b < targets.n_blocks(); ++b)
-    convolve(medium.nu, level.links, level.first, kernel.spectra().block(b), sources.block(b), targets.block(b));
-  watch.lap(seconds.translations);
+    convolve(medium.nu, level.links, level.first, kernels.block(b), sources.block(b), targets.block(b));
+  return targets;
+}
+
+void GridExpansions::add_to_stress(const Level &level, const Spectra &targets)
+{
+  const Stopwatch watch(seconds.transforms);
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t t = 0; t < level.targets.size(); ++t)
   {
@@ -202,14 +205,24 @@ void GridExpansions::translate(const std::size_t level_number)
     targets.get(t, spectrum);
     transform.add_backward(spectrum, stress.rows() + level.targets[t] * grid.n_rows());
   }
-  watch.lap(seconds.transforms);
-  const std::size_t rows =
+}
+
+void GridExpansions::translate(const std::size_t level_number)
+{
+  Level level = level_of(level_number);
+  if (level.targets.empty())
+    return;
+  const GridKernel kernel = kernel_of(level);
+  const Spectra sources = spectra_of_sources(level), targets = convolve_all(level, kernel.spectra(), sources);
+  add_to_stress(level, targets);
+  const std::size_t n_rows =
       density.size() + stress.size() + kernel.spectra().n_rows() + sources.n_rows() + targets.n_rows();
-  most_bytes = std::max(most_bytes, rows * row_size);
+  most_bytes = std::max(most_bytes, n_rows * row_size);
 }
 
 void GridExpansions::add_down(const std::size_t level)
 {
+  const Stopwatch watch(seconds.downward);
 #pragma omp parallel for schedule(dynamic, 8)
   for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
     if (const Box &box = tree.boxes()[i]; box.n_points() > 0)

@@ -44,7 +44,7 @@ private:
   struct Level
   {
     std::vector<std::uint32_t> sources, targets;
-    std::vector<GridLink> links;      ///< target by target
+    std::vector<GridLink> links;      ///< target by target; kernels are numbered by kernel_of()
     std::vector<std::uint32_t> first; ///< of each target, and the end
     std::vector<Offset> offsets;      ///< that occur
   };
@@ -54,7 +54,10 @@ private:
   void add_up(std::size_t level);
   Level level_of(std::size_t level) const;
   void translate(std::size_t level);
+  GridKernel kernel_of(Level &level);
   Spectra spectra_of_sources(const Level &level);
+  Spectra convolve_all(const Level &level, const Spectra &kernels, const Spectra &sources);
+  void add_to_stress(const Level &level, const Spectra &targets);
   void add_down(std::size_t level);
 
   IsotropicMedium medium;
