@@ -73,6 +73,7 @@ MultipoleStress::MultipoleStress(const IsotropicMedium &medium_, const Multipole
       medium(medium_), rays(distant_rays.begin(), distant_rays.end())
 {
   sources.reserve(lines.size());
+  line_table.reserve(lines.size());
   for (const std::uint32_t i : octree().line_order())
   {
     sources.push_back(lines[i]);

@@ -65,8 +65,11 @@ MultipoleSum::MultipoleSum(const MultipoleSettings &given, const RootGrid &grid,
       values(n_values)
 {
   for (std::size_t c = 0; c < 3; ++c)
+  {
+    x[c].reserve(points.size());
     for (const std::uint32_t i : tree.point_order())
       x[c].push_back(points[i][static_cast<int>(c)]);
+  }
   for (std::uint32_t i = 0; i < tree.boxes().size(); ++i)
     if (tree.boxes()[i].is_leaf() && tree.boxes()[i].n_points() > 0)
       leaves.push_back(i);
