@@ -283,10 +283,9 @@ void add_numerics(std::vector<ParameterEntry> &t)
        "Sums over lines: every pair in closed form (direct), a fast multipole method, or the latter for forces and "
        "field "
        "points from 2000 segments on, and on the surface from as many pairs of sources and points as those have."});
-  t.push_back(
-      {"Forces", "Far-field tolerance", "1e-3", between(1e-8, 1e-1), "",
-       "Error of the fast multipole method relative to the rms of the far field, about a fifth of the total; a tenth "
-       "of it on the surface."});
+  t.push_back({"Forces", "Far-field tolerance", "1e-3", between(1e-8, 1e-1), "",
+               "Error of the fast multipole method relative to the rms of the far field, a fifth or less relative to "
+               "the total; a tenth of it on the surface."});
   const std::string s = "Time stepping";
   t.push_back({s, "Final time", "1e-6", positive(), "s", "The run ends at this time."});
   t.push_back({s, "Maximum steps", "1000000", count(1), "", "The run ends after this many steps."});

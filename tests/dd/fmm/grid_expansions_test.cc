@@ -3,7 +3,8 @@
 #include "dd/elasticity/segment_stress.h"
 #include "dd/fmm/grid_stress.h"
 #include "dd/forces/multipole_field.h"
-#include "tests/dd/fmm/systems_of_lines.h"
+#include "samples/systems_of_lines.h"
+#include "tests/dd/elasticity/elasticity_test_helpers.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -18,6 +19,7 @@ namespace ddfem::fmm
 {
 namespace
 {
+using namespace samples;
 using namespace test;
 
 double rms(const std::vector<SymTensor> &values)
@@ -105,7 +107,7 @@ TEST(GridKernel, ConvolutionsAreSumsOverThePoints)
 class FarField
 {
 public:
-  FarField(const LinesOfTest &given, const std::size_t n_points, const fmm::MultipoleSettings &settings)
+  FarField(const samples::SampleLines &given, const std::size_t n_points, const fmm::MultipoleSettings &settings)
       : system(given.system()), points(points_among(system, n_points)), field(system, points, settings)
   {
     if (system.cell())
@@ -187,11 +189,11 @@ const fmm::MultipoleSettings deep_tree{1e-3, 0, 0.05};
 
 TEST(GridExpansions, FarStressHasTheErrorOfItsOrder)
 {
-  std::vector<LinesOfTest> systems;
+  std::vector<samples::SampleLines> systems;
   systems.push_back(random_loops(60));
   systems.push_back(clustered_loops(60));
   systems.push_back(periodic_loops(40, Vec3(-450, -500, -550), Vec3(900, 1000, 1320), 7)); // boxes that are no cubes
-  for (const LinesOfTest &lines : systems)
+  for (const samples::SampleLines &lines : systems)
   {
     constexpr std::size_t stride = 10;
     FarField field(lines, 1000, deep_tree);
