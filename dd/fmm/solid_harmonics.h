@@ -36,6 +36,8 @@ constexpr std::size_t harmonic_index(int l, int m)
 /// Values of all harmonics up to @p order at eight points: @p points holds the rows x, y, z; @p values gets n_harmonics()
 /// rows.
 void regular_harmonics(int order, const Row *points, Row *values);
+/// The same at sixteen points in single precision.
+void regular_harmonics(int order, const WideSingleRows::Row *points, WideSingleRows::Row *values);
 
 /// One term of the gradient of an expansion sum c_lm S_lm: coefficient `to` of the derivative gets factor c_from.
 struct GradientTerm

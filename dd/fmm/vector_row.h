@@ -24,17 +24,20 @@ inline constexpr std::size_t row_size = row_width * sizeof(double);
 struct DoubleRows
 {
   using Scalar = double;
+  static constexpr std::size_t width = row_width;
   using Row = double __attribute__((vector_size(row_size), aligned(sizeof(double)), may_alias));
 };
 struct SingleRows
 {
   using Scalar = float;
+  static constexpr std::size_t width = row_width;
   using Row = float __attribute__((vector_size(row_size / 2), aligned(sizeof(float)), may_alias));
 };
 /// Two SingleRows side by side.
 struct WideSingleRows
 {
   using Scalar = float;
+  static constexpr std::size_t width = 2 * row_width;
   using Row = float __attribute__((vector_size(row_size), aligned(sizeof(float)), may_alias));
 };
 using Row = DoubleRows::Row;
