@@ -47,11 +47,11 @@ template <std::size_t n_values> class LocalExpansion
 
 public:
   /// Adds the field at the points of a batch.
-  void add(const PointBatch<n_values> &batch) const { add_by<DoubleRows>(batch, &coefficients.rows()[0][0]); }
+  void add(const PointBatch<n_values> &batch) const { add_by<DoubleRows>(batch, coefficients.data()); }
   /// The same with expansions in single precision: six digits of the largest values.
   void add_in_single_precision(const PointBatch<n_values> &batch) const
   {
-    const double *const from = &coefficients.rows()[0][0];
+    const double *const from = coefficients.data();
     std::vector<float> single(coefficients.size() * row_width);
     for (std::size_t k = 0; k < single.size(); ++k)
       single[k] = static_cast<float>(from[k]);

@@ -76,6 +76,7 @@ public:
   void set_zero() { numbers.assign(numbers.size(), 0.0); }
   Row *rows() { return reinterpret_cast<Row *>(numbers.data()); }
   const Row *rows() const { return reinterpret_cast<const Row *>(numbers.data()); }
+  const double *data() const { return numbers.data(); }
   double &operator()(std::size_t row, std::size_t column) { return numbers[row * row_width + column]; }
   double operator()(std::size_t row, std::size_t column) const { return numbers[row * row_width + column]; }
 
