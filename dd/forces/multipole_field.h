@@ -67,10 +67,10 @@ private:
 /**
  * Forces on the ends of the lines of a system from all other lines, rays and images. The stress is taken at Gauss points of
  * panels (pieces of lines of similar length). Where a source is too near to a panel for the rule, its contribution
- * to the rule is replaced by the force in closed form (segment_force.h): connected and close pairs are exact. A panel of half
- * length h with n points integrates a source at distance d with a relative error of about rho^-(2n-1), rho = d/h +
- * sqrt(1 + (d/h)^2): rho^-2n (Trefethen, SIAM Rev. 50 (2008) 67, eq. 4.15) times the size of the shape functions on the ellipse,
- * about rho/4. This decides.
+ * to the rule is replaced by that to a rule of one point more or, nearer by, by the force in closed form (segment_force.h): connected
+ * and close pairs are exact. A panel of half length h with n points integrates a source at distance d from its middle with a
+ * relative error of about rho^-(2n-1), d/h = (rho + 1/rho)/2: rho^-2n (Trefethen, SIAM Rev. 50 (2008) 67, eq. 4.15) times the
+ * size of the shape functions on the ellipse, about rho/4. This decides.
  */
 class MultipoleForces
 {
