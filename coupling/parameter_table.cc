@@ -286,6 +286,12 @@ void add_numerics(std::vector<ParameterEntry> &t)
   t.push_back({"Forces", "Far-field tolerance", "1e-3", between(1e-8, 1e-1), "",
                "Error of the fast multipole method relative to the rms of the far field, a fifth or less relative to "
                "the total; a tenth of it on the surface."});
+  t.push_back(
+      {"Forces", "Far-field refresh", "every evaluation", one_of("every evaluation|adaptive|every n steps|never"), "",
+       "When the far field of the fast multipole method is computed again for the forces: when its estimated "
+       "error reaches half of the tolerance (adaptive), or, for comparison, every n steps or never, without it."});
+  t.push_back(
+      {"Forces", "Far-field interval", "20", count(1), "", "Steps between refreshes of the far field every n steps."});
   const std::string s = "Time stepping";
   t.push_back({s, "Final time", "1e-6", positive(), "s", "The run ends at this time."});
   t.push_back({s, "Maximum steps", "1000000", count(1), "", "The run ends after this many steps."});

@@ -50,6 +50,12 @@ void read_material(const InputDeck &deck, Parameters &p)
                              : summation == "multipole" ? SummationMethod::multipole
                                                         : SummationMethod::automatic;
   p.grain.summation.tolerance = deck.number("Forces/Far-field tolerance");
+  const std::string refresh = deck.text("Forces/Far-field refresh");
+  p.far_field.mode = refresh == "every evaluation" ? FarFieldRefresh::every_evaluation
+                     : refresh == "every n steps"  ? FarFieldRefresh::every_n_steps
+                     : refresh == "never"          ? FarFieldRefresh::never
+                                                   : FarFieldRefresh::adaptive;
+  p.far_field.interval = deck.integer("Forces/Far-field interval");
 }
 
 /// The cell of the named material, with c/a of the input if given.

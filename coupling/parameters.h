@@ -104,6 +104,7 @@ struct Parameters
   TopologySettings topology;
   double core_cutoff_radius = 0; ///< nm
   double pair_tolerance = 0;
+  RefreshSettings far_field;
   IntegratorSettings integrator;
   StopCriteria stop;
   OutputParameters output;

@@ -47,7 +47,7 @@ void install_signal_handlers()
 }
 
 Simulation::Simulation(const Parameters &p, MPI_Comm comm)
-    : parameters(p), communicator(comm), dislocations(build_network(p)),
+    : parameters(p), communicator(comm), dislocations(build_network(p)), far_field(p.far_field),
       product_plane(product_plane_rule(p.slip_systems())), integrator(p.integrator)
 {
   if (p.mode == Mode::finite)
@@ -101,6 +101,7 @@ ForceEnvironment Simulation::environment()
   e.cell = images ? &parameters.cell : nullptr;
   e.images = images.get();
   e.correction = &correction;
+  e.far_field = &far_field;
   return e;
 }
 
@@ -160,6 +161,7 @@ IntegratorStep Simulation::move_lines()
   const ForceSettings settings = parameters.force_settings();
   const ForceEnvironment e = environment();
   forces_at_start.clear();
+  far_field.begin_step();
   // The integrator asks first at the start of the step, and last at the end of the one that it accepts.
   const auto velocity = [&](const Network &n)
   {

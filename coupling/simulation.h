@@ -106,6 +106,7 @@ private:
   Network dislocations;
   std::unique_ptr<FiniteGrain> finite_grain;
   std::unique_ptr<PeriodicImages> images;
+  FarFieldCache far_field;
   OpenLines initial_open_lines;
   ProductPlane product_plane;
   StabilisedRungeKutta integrator;

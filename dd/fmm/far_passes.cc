@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace ddfem::fmm
@@ -50,16 +51,18 @@ public:
       sum.q[k] += static_cast<Scalar>(given.q[k]);
     }
   }
-  void copy(const std::size_t box, const std::size_t n_coefficients, const ExpansionView &result) const
+  /// Adds @p factor times the coefficients of a box to @p result.
+  void add_to(const ExpansionView &result, const std::size_t box, const double factor) const
   {
     const Scalar *const of_fields = fields.data() + box * n * row_width;
-    for (std::size_t k = 0; k < n_coefficients; ++k)
+    for (std::size_t k = 0; k < n; ++k)
     {
       for (std::size_t c = 0; c < row_width; ++c)
-        result.fields[k][c] = static_cast<double>(of_fields[k * row_width + c]);
-      result.q[k] = static_cast<double>(q[box * n + k]);
+        result.fields[k][c] += factor * static_cast<double>(of_fields[k * row_width + c]);
+      result.q[k] += factor * static_cast<double>(q[box * n + k]);
     }
   }
+  bool empty() const { return q.empty(); }
 
 private:
   std::size_t n = 0;
@@ -133,9 +136,17 @@ public:
     }
   }
 
-  void copy_local(const std::size_t box, const ExpansionView &result) const override
+  void copy_local(const std::size_t box, const double ahead, const ExpansionView &result) const override
   {
-    local.copy(box, n_harmonics(orders.multipole), result);
+    const bool extrapolated = ahead != 0 && !earlier.empty();
+    local.add_to(result, box, extrapolated ? 1 + ahead : 1);
+    if (extrapolated)
+      earlier.add_to(result, box, -ahead);
+  }
+
+  void swap_local() override
+  {
+    std::swap(local, earlier);
   }
 
 private:
@@ -255,6 +266,7 @@ private:
   FarTranslations<Scalar> across;
   std::vector<BasicTranslation<Scalar>> to_parent, to_child;
   Expansions<Scalar> multipole, local;
+  Expansions<Scalar> earlier; ///< local ones
 };
 
 template <class Scalar>

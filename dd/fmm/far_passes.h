@@ -42,8 +42,11 @@ public:
   virtual void translate(std::span<const std::uint8_t> wanted) = 0;
   /// Hands local coefficients down to the children. @p add_distant: of sources at infinity, at boxes of level @p distant_level.
   virtual void downward(std::span<const std::uint8_t> wanted, int distant_level, const AddToBox &add_distant) = 0;
-  /// Copies the local coefficients of a box to zeroed rows.
-  virtual void copy_local(std::size_t box, const ExpansionView &local) const = 0;
+  /// Copies the local coefficients of a box to zeroed rows; extrapolated by @p ahead times their change since the
+  /// earlier ones, if there are any.
+  virtual void copy_local(std::size_t box, double ahead, const ExpansionView &local) const = 0;
+  /// Makes the local coefficients the earlier ones, and the other way round.
+  virtual void swap_local() = 0;
 
 protected:
   FarPasses() = default;

@@ -72,15 +72,29 @@ MultipoleStress::MultipoleStress(const IsotropicMedium &medium_, const Multipole
     : MultipoleSum(given, grid, extents_of(lines), points, smallest_box(medium_.a, given.tolerance), 6),
       medium(medium_), rays(distant_rays.begin(), distant_rays.end())
 {
+  take(lines);
+  for (const RaySource &r : rays)
+    ray_table.add_ray(r.origin, r.direction, r.burgers);
+}
+
+void MultipoleStress::take(const std::span<const LineSource> lines)
+{
+  sources.clear();
   sources.reserve(lines.size());
+  line_table = {};
   line_table.reserve(lines.size());
   for (const std::uint32_t i : octree().line_order())
   {
     sources.push_back(lines[i]);
     line_table.add_segment(lines[i].start, lines[i].end, lines[i].burgers);
   }
-  for (const RaySource &r : rays)
-    ray_table.add_ray(r.origin, r.direction, r.burgers);
+}
+
+void MultipoleStress::move(const std::span<const LineSource> lines, const std::span<const std::uint32_t> box_of_line,
+                           const std::span<const Vec3> points, const std::span<const std::uint32_t> leaf_of_point)
+{
+  MultipoleSum::move(extents_of(lines), box_of_line, points, leaf_of_point);
+  take(lines);
 }
 
 void MultipoleStress::add_own_moments(const Box &box, const ExpansionView &moments) const
@@ -146,5 +160,24 @@ std::vector<SymTensor> MultipoleStress::stress(MPI_Comm comm, const Part part)
 {
   compute(comm, part);
   return in_given_order<SymTensor>();
+}
+
+std::vector<SymTensor> MultipoleStress::stress_with_kept_far_field(MPI_Comm comm, const KeptExpansions &use)
+{
+  evaluate(comm, use);
+  return in_given_order<SymTensor>();
+}
+
+std::vector<SymTensor> MultipoleStress::stress_with_new_far_field(MPI_Comm comm)
+{
+  compute_again(comm, Part::all);
+  return in_given_order<SymTensor>();
+}
+
+void MultipoleStress::set_earlier(std::vector<LineSource> lines)
+{
+  sources.swap(lines);
+  compute_earlier();
+  sources.swap(lines);
 }
 } // namespace ddfem::fmm

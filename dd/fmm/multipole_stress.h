@@ -21,11 +21,23 @@ public:
   /// Stress at the points in the order given, MPa. Collective: see compute().
   std::vector<SymTensor> stress(MPI_Comm comm, Part part = Part::all);
 
+  /// Puts other lines and points into the boxes; what distant boxes add stays as it was at the last stress(). See
+  /// Octree::move().
+  void move(std::span<const LineSource> lines, std::span<const std::uint32_t> box_of_line, std::span<const Vec3> points,
+            std::span<const std::uint32_t> leaf_of_point);
+  /// Stress after move(), MPa. Collective.
+  std::vector<SymTensor> stress_with_kept_far_field(MPI_Comm comm, const KeptExpansions &use);
+  /// The same with a new far field; the last one is kept for extrapolation.
+  std::vector<SymTensor> stress_with_new_far_field(MPI_Comm comm);
+  /// Replaces the far field that was kept for extrapolation by that of the same lines at other places, in the order of lines().
+  void set_earlier(std::vector<LineSource> lines);
+
   /// The lines in the order of the tree.
   const std::vector<LineSource> &lines() const { return sources; }
   const LineTable &table() const { return line_table; }
 
 private:
+  void take(std::span<const LineSource> lines);
   void add_own_moments(const Box &box, const ExpansionView &moments) const override;
   int distant_level() const override { return rays.empty() ? -1 : level_of_distant_rays; }
   void add_distant(const Box &box, const ExpansionView &local) const override;

@@ -66,12 +66,7 @@ MultipoleSum::MultipoleSum(const MultipoleSettings &given, const RootGrid &grid,
       tree(grid, sources, points, tree_settings(given, expansion_order_, smallest_box, n_antiderivatives_)),
       values(n_values)
 {
-  for (std::size_t c = 0; c < 3; ++c)
-  {
-    x[c].reserve(points.size());
-    for (const std::uint32_t i : tree.point_order())
-      x[c].push_back(points[i][static_cast<int>(c)]);
-  }
+  place_points(points);
   for (std::uint32_t i = 0; i < tree.boxes().size(); ++i)
     if (tree.boxes()[i].is_leaf() && tree.boxes()[i].n_points() > 0)
       leaves.push_back(i);
@@ -80,6 +75,33 @@ MultipoleSum::MultipoleSum(const MultipoleSettings &given, const RootGrid &grid,
             { return tree.boxes()[a].points_begin < tree.boxes()[b].points_begin; });
   passes = make_far_passes(tree, grid, {expansion_order_, order_of_cubes, n_antiderivatives},
                            single_precision() && n_antiderivatives == 0);
+}
+
+void MultipoleSum::place_points(const std::span<const Vec3> points)
+{
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    x[c].clear();
+    for (const std::uint32_t i : tree.point_order())
+      x[c].push_back(points[i][static_cast<int>(c)]);
+  }
+}
+
+void MultipoleSum::move(const std::span<const SourceExtent> sources, const std::span<const std::uint32_t> box_of_source,
+                        const std::span<const Vec3> points, const std::span<const std::uint32_t> leaf_of_point)
+{
+  tree.move(sources, box_of_source, points, leaf_of_point);
+  place_points(points);
+}
+
+std::vector<std::size_t> MultipoleSum::points_of_leaves(const std::size_t stride) const
+{
+  std::vector<std::size_t> points;
+  for (std::size_t k = 0; k < leaves.size(); k += stride)
+    for (const Box &leaf = tree.boxes()[leaves[k]];
+         const std::uint32_t i : std::span(tree.point_order()).subspan(leaf.points_begin, leaf.n_points()))
+      points.push_back(i);
+  return points;
 }
 
 double MultipoleSum::work(const std::size_t leaf) const
@@ -139,33 +161,56 @@ void MultipoleSum::far_passes()
                    [this](const Box &box, const ExpansionView &expansion) { add_distant(box, expansion); });
 }
 
-void MultipoleSum::add_far_of(const std::size_t leaf)
+void MultipoleSum::add_far_of(const std::size_t leaf, const double ahead)
 {
   RowBuffer fields(n_harmonics(expansion_order_));
   std::vector<double> q(fields.size(), 0.0);
-  passes->copy_local(leaf, {fields.rows(), q.data()});
+  passes->copy_local(leaf, ahead, {fields.rows(), q.data()});
   add_far(tree.boxes()[leaf], fields.rows(), q.data());
 }
 
 void MultipoleSum::compute(MPI_Comm comm, const Part part)
 {
   choose_share(comm);
+  if (part != Part::near)
+    far_passes();
+  evaluate(comm, {.part = part});
+}
+
+void MultipoleSum::compute_again(MPI_Comm comm, const Part part)
+{
+  passes->swap_local();
+  far_passes();
+  evaluate(comm, {.part = part});
+}
+
+void MultipoleSum::compute_earlier()
+{
+  passes->swap_local();
+  far_passes();
+  passes->swap_local();
+}
+
+void MultipoleSum::evaluate(MPI_Comm comm, const KeptExpansions &use)
+{
   for (std::vector<double> &v : values)
     v.assign(tree.point_order().size(), 0.0);
-  if (part != Part::near)
+  const std::size_t stride = use.stride, first = (first_leaf + stride - 1) / stride * stride;
+  if (use.part != Part::near)
   {
-    far_passes();
     const Stopwatch watch(seconds.points);
 #pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t k = first_leaf; k < last_leaf; ++k)
-      add_far_of(leaves[k]);
+    for (std::size_t k = first; k < last_leaf; k += stride)
+      if (tree.boxes()[leaves[k]].n_points() > 0)
+        add_far_of(leaves[k], use.ahead);
   }
-  if (part != Part::far)
+  if (use.part != Part::far)
   {
     const Stopwatch watch(seconds.near);
 #pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t k = first_leaf; k < last_leaf; ++k)
-      add_near(leaves[k]);
+    for (std::size_t k = first; k < last_leaf; k += stride)
+      if (tree.boxes()[leaves[k]].n_points() > 0)
+        add_near(leaves[k]);
   }
   gather(comm);
 }

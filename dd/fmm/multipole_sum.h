@@ -41,6 +41,14 @@ enum class Part : std::uint8_t
   far
 };
 
+/// How the local expansions of an earlier time are used.
+struct KeptExpansions
+{
+  double ahead = 0;       ///< extrapolated by so many times the change before
+  std::size_t stride = 1; ///< at the points of every so many leaves; zero elsewhere
+  Part part = Part::all;
+};
+
 /**
  * Near pairs of boxes by closed forms, distant pairs by expansions of harmonic potentials, on an adaptive octree that is divided
  * as long as that saves work. Large sources stay in large boxes. All sums run in a fixed order: the result does not depend on the
@@ -58,6 +66,10 @@ public:
   /// Degree of the local expansions.
   int local_order() const { return expansion_order_ - n_antiderivatives; }
   const PhaseTimes &times() const { return seconds; }
+  /// Leaves that had points when the tree was made.
+  std::size_t n_leaves() const { return leaves.size(); }
+  /// Points of every @p stride -th leaf, in the order given.
+  std::vector<std::size_t> points_of_leaves(std::size_t stride) const;
 
 protected:
   /// @p smallest_box: boxes are not divided below this edge length, nm. @p n_values: components of the field. @p n_antiderivatives: how
@@ -68,6 +80,15 @@ protected:
 
   /// Collective: every rank of @p comm computes a share of about equal cost; all get all values.
   void compute(MPI_Comm comm, Part part);
+  /// Puts other sources and points into the boxes, see Octree::move(); local expansions stay those of the last compute().
+  void move(std::span<const SourceExtent> sources, std::span<const std::uint32_t> box_of_source,
+            std::span<const Vec3> points, std::span<const std::uint32_t> leaf_of_point);
+  /// As compute() after move(), with the shares of the last time, whose local expansions become the earlier ones.
+  void compute_again(MPI_Comm comm, Part part);
+  /// Makes the earlier local expansions those of the moments as they are now.
+  void compute_earlier();
+  /// Evaluates the local expansions of the last compute() and what acts directly. Collective, with the shares of that time.
+  void evaluate(MPI_Comm comm, const KeptExpansions &use);
   /// Values at the points in the order given.
   template <class Value> std::vector<Value> in_given_order() const
   {
@@ -107,7 +128,8 @@ private:
   void choose_share(MPI_Comm comm);
   double work(std::size_t leaf) const;
   void far_passes();
-  void add_far_of(std::size_t leaf);
+  void place_points(std::span<const Vec3> points);
+  void add_far_of(std::size_t leaf, double ahead);
   void gather(MPI_Comm comm);
 
   MultipoleSettings settings;

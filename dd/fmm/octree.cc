@@ -99,6 +99,18 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
     neighbours = std::move(next);
   }
   level_begin.pop_back(); // the last level is empty
+  place_spheres();
+  for (const Box &box : all)
+  {
+    centres.push_back(centre(box));
+    had_points.push_back(box.n_points() > 0 ? 1 : 0);
+  }
+  drift.assign(level_begin.size(), 0.0);
+}
+
+void Octree::place_spheres()
+{
+  spheres = {};
   for (std::vector<double> *const v : {&spheres.x, &spheres.y, &spheres.z, &spheres.radius})
     v->reserve(line_at.size());
   for (const std::uint32_t i : line_at)
@@ -108,8 +120,17 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
     spheres.z.push_back(line_middle[i][2]);
     spheres.radius.push_back(0.5 * line_length[i]);
   }
-  for (const Box &box : all)
-    centres.push_back(centre(box));
+}
+
+int Octree::root_at(const Vec3 &x) const
+{
+  int k = 0;
+  for (int c = 0; c < 3; ++c)
+  {
+    const int n = grid.n[static_cast<std::size_t>(c)];
+    k = k * n + std::clamp(static_cast<int>(std::floor((x[c] - grid.origin[c]) / grid.edges[c])), 0, n - 1);
+  }
+  return k;
 }
 
 void Octree::sort_into_roots(const std::span<const SourceExtent> sources, const std::span<const Vec3> points)
@@ -127,22 +148,12 @@ void Octree::sort_into_roots(const std::span<const SourceExtent> sources, const 
   point_at.resize(points.size());
   std::iota(line_at.begin(), line_at.end(), 0U);
   std::iota(point_at.begin(), point_at.end(), 0U);
-  const auto root_of = [&](const Vec3 &x)
-  {
-    int k = 0;
-    for (int c = 0; c < 3; ++c)
-    {
-      const int n = grid.n[static_cast<std::size_t>(c)];
-      k = k * n + std::clamp(static_cast<int>(std::floor((x[c] - grid.origin[c]) / grid.edges[c])), 0, n - 1);
-    }
-    return k;
-  };
   const int volume = grid.n[0] * grid.n[1] * grid.n[2];
   const auto n_roots = static_cast<std::size_t>(volume);
   const auto line_limits = sort_by_key(line_at, 0, static_cast<std::uint32_t>(sources.size()), n_roots,
-                                       [&](std::uint32_t i) { return root_of(line_middle[i]); });
+                                       [&](std::uint32_t i) { return root_at(line_middle[i]); });
   const auto point_limits = sort_by_key(point_at, 0, static_cast<std::uint32_t>(points.size()), n_roots,
-                                        [&](std::uint32_t i) { return root_of(point[i]); });
+                                        [&](std::uint32_t i) { return root_at(point[i]); });
   for (std::size_t k = 0; k < n_roots; ++k)
   {
     const int i = static_cast<int>(k);

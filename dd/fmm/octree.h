@@ -86,6 +86,17 @@ public:
   Octree(const RootGrid &grid, std::span<const SourceExtent> sources, std::span<const Vec3> points,
          const TreeSettings &settings);
 
+  /// Puts other sources and points into the boxes, whose division and links stay: each source into a box that held some itself when
+  /// the tree was made, @p box_of_line, each point into a leaf that had some.
+  void move(std::span<const SourceExtent> sources, std::span<const std::uint32_t> box_of_line,
+            std::span<const Vec3> points, std::span<const std::uint32_t> leaf_of_point);
+  /// Box that holds each line itself, in the order given.
+  std::vector<std::uint32_t> boxes_of_lines() const;
+  /// Leaf of a point, or the nearest one on the way to it that had points when the tree was made.
+  std::uint32_t leaf_at(const Vec3 &x) const;
+  /// nm; 0 inside.
+  double distance_outside(std::size_t box, const Vec3 &x) const;
+
   /// Level by level; children of a box are contiguous.
   const std::vector<Box> &boxes() const { return all; }
   /// First box of each level, and one past the last box.
@@ -127,6 +138,7 @@ private:
   };
   using Neighbours = std::vector<std::vector<Neighbour>>;
 
+  int root_at(const Vec3 &x) const;
   void sort_into_roots(std::span<const SourceExtent> sources, std::span<const Vec3> points);
   void pair_roots(Neighbours &neighbours);
   bool is_worth_dividing(std::size_t box, const std::vector<Neighbour> &neighbours) const;
@@ -134,6 +146,10 @@ private:
   void pair_children(std::size_t box, const std::vector<Neighbour> &of_parent, Neighbours &neighbours);
   void pair(std::size_t target, const Neighbour &source, Neighbours &neighbours);
   double translation_cost(const std::array<std::int16_t, 3> &offset) const;
+  void place_spheres();
+  void number_contents(std::size_t box, std::span<const std::uint32_t> own_lines,
+                       std::span<const std::uint32_t> own_points, std::uint32_t &next_line, std::uint32_t &next_point);
+  void measure_drift(std::span<const std::uint32_t> box_of_line);
 
   RootGrid grid;
   TreeSettings settings;
@@ -147,8 +163,10 @@ private:
   std::vector<double> line_length;      ///< as given
   std::vector<Vec3> shifts;
   LineSpheres spheres;
-  std::vector<Vec3> centres; ///< of the boxes, nm
-  double longest_of_all = 0; ///< line, nm
+  std::vector<Vec3> centres;            ///< of the boxes, nm
+  double longest_of_all = 0;            ///< line, nm
+  std::vector<std::uint8_t> had_points; ///< when the tree was made
+  std::vector<double> drift; ///< by level: how much farther lines of its boxes and their children reach than then, nm
 };
 
 template <class Visit> void Octree::for_each_near_link(const std::size_t leaf, Visit &&visit) const
@@ -177,7 +195,7 @@ void Octree::visit_lines(const Box &box, const Vec3 &x, const double radius, con
                          Visit &visit) const
 {
   // Lines that leaves of level 0 hold may be of any length.
-  const double overhang = box.level == 0 ? longest_of_all : settings.longest_line * size(box);
+  const double overhang = (box.level == 0 ? longest_of_all : settings.longest_line * size(box)) + 2 * drift[box.level];
   const Vec3 &centre_of_box = centres[static_cast<std::size_t>(&box - all.data())], &whole = edges(box);
   const double reach = radius + 0.5 * overhang;
   double outside2 = 0;

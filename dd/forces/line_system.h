@@ -38,6 +38,11 @@ public:
   const std::vector<Vec3> &image_shifts() const { return shifts; }
   const PeriodicImages *far_images() const { return images; }
   const PeriodicCell *cell() const { return periodic_cell; }
+  /// Lattice vector that takes @p x into the cell; zero without one, nm.
+  Vec3 shift_into_cell(const Vec3 &x) const
+  {
+    return periodic_cell ? periodic_cell->shift_into_cell(x) : Vec3(Vec3::Zero());
+  }
 
   /// Infinite-body stress (dislocations only, no applied stress) at a point, MPa.
   SymTensor stress(const Vec3 &x) const;

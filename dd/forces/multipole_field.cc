@@ -23,33 +23,79 @@ double mean_length(const std::vector<StraightLine> &lines)
 
 MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const Vec3> points_,
                                const fmm::MultipoleSettings &settings)
-    : system(system_), points(points_.begin(), points_.end())
+    : system(&system_)
 {
   std::vector<LineSource> lines;
-  for (const StraightLine &l : system.lines())
+  for (const StraightLine &l : system->lines())
     lines.push_back({l.start, l.end, l.burgers});
   std::vector<RaySource> rays;
-  for (const VirtualRay &r : system.rays())
+  for (const VirtualRay &r : system->rays())
     rays.push_back({r.origin, r.direction, r.burgers});
-  const PeriodicCell *const cell = system.cell();
-  if (cell)
-    for (Vec3 &x : points)
-      x += cell->shift_into_cell(x);
+  take(points_);
+  const PeriodicCell *const cell = system->cell();
   const fmm::RootGrid grid = cell ? fmm::periodic_grid(cell->origin, cell->lengths)
                                   : fmm::enclosing_grid(fmm::extents_of(lines), rays, points);
-  const auto distant = fmm::cut_rays(rays, grid, mean_length(system.lines()), lines);
-  expansions = std::make_unique<fmm::MultipoleStress>(system.medium(), settings, grid, lines, distant, points);
+  const auto distant = fmm::cut_rays(rays, grid, mean_length(system->lines()), lines);
+  expansions = std::make_unique<fmm::MultipoleStress>(system->medium(), settings, grid, lines, distant, points);
 }
 
 std::vector<SymTensor> MultipoleField::stress(MPI_Comm comm, const fmm::Part part)
 {
   std::vector<SymTensor> values = expansions->stress(comm, part);
-  if (system.far_images() && part != fmm::Part::near)
-  {
-#pragma omp parallel for schedule(static)
-    for (std::size_t i = 0; i < points.size(); ++i)
-      values[i] += system.far_images()->far_stress(points[i]);
-  }
+  if (part != fmm::Part::near)
+    add_distant_images(values);
   return values;
+}
+
+void MultipoleField::take(const std::span<const Vec3> given)
+{
+  points.assign(given.begin(), given.end());
+  for (Vec3 &x : points)
+    x += system->shift_into_cell(x);
+}
+
+void MultipoleField::add_distant_images(std::vector<SymTensor> &values) const
+{
+  if (!system->far_images())
+    return;
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < points.size(); ++i)
+    values[i] += system->far_images()->far_stress(points[i]);
+}
+
+SymTensor MultipoleField::stress_of_distant_images(const std::size_t i) const
+{
+  return system->far_images() ? system->far_images()->far_stress(points[i]) : SymTensor(SymTensor::Zero());
+}
+
+void MultipoleField::move(const LineSystem &now, const std::span<const Vec3> points_now, const LinesInBoxes &lines,
+                          const std::span<const std::uint32_t> leaf_of_point)
+{
+  system = &now;
+  take(points_now);
+  expansions->move(lines.lines, lines.box, points, leaf_of_point);
+}
+
+std::vector<SymTensor> MultipoleField::stress_with_kept_far_field(MPI_Comm comm, const double ahead)
+{
+  std::vector<SymTensor> values = expansions->stress_with_kept_far_field(comm, {.ahead = ahead});
+  add_distant_images(values);
+  return values;
+}
+
+std::vector<SymTensor> MultipoleField::stress_with_new_far_field(MPI_Comm comm)
+{
+  std::vector<SymTensor> values = expansions->stress_with_new_far_field(comm);
+  add_distant_images(values);
+  return values;
+}
+
+void MultipoleField::set_earlier(const std::vector<fmm::LineSource> &lines)
+{
+  std::vector<fmm::LineSource> in_order;
+  in_order.reserve(lines.size());
+  for (const std::uint32_t i : expansions->octree().line_order())
+    in_order.push_back(lines[i]);
+  expansions->set_earlier(std::move(in_order));
 }
 } // namespace ddfem

@@ -4,6 +4,7 @@
 #include "dd/elasticity/segment_force.h"
 #include "dd/elasticity/vectorised/force_kernels.h"
 #include "dd/fmm/multipole_stress.h"
+#include "dd/forces/frozen_lines.h"
 #include "dd/forces/line_system.h"
 
 #include <mpi.h>
@@ -14,6 +15,8 @@
 
 namespace ddfem
 {
+class FarFieldCache;
+
 /// How the fields of many lines are summed.
 enum class SummationMethod : std::uint8_t
 {
@@ -53,13 +56,30 @@ public:
   /// and threads.
   std::vector<SymTensor> stress(MPI_Comm comm, fmm::Part part = fmm::Part::all);
 
+  /// Puts lines and points of another time into the boxes, see fmm::MultipoleStress::move(). @p lines: those of @p now in
+  /// its order, then others. For systems without rays.
+  void move(const LineSystem &now, std::span<const Vec3> points_now, const LinesInBoxes &lines,
+            std::span<const std::uint32_t> leaf_of_point);
+  /// As stress() after move(); what distant boxes add is that of the last time, extrapolated by @p ahead times its change before.
+  /// Collective.
+  std::vector<SymTensor> stress_with_kept_far_field(MPI_Comm comm, double ahead);
+  /// The same with a new far field; the last one is kept for extrapolation.
+  std::vector<SymTensor> stress_with_new_far_field(MPI_Comm comm);
+  /// See fmm::MultipoleStress::set_earlier(); @p lines in the order given last.
+  void set_earlier(const std::vector<fmm::LineSource> &lines);
+  /// Stress of the images beyond the 26 neighbours at point number @p i, MPa.
+  SymTensor stress_of_distant_images(std::size_t i) const;
+
   fmm::MultipoleStress &sum() { return *expansions; }
   const fmm::MultipoleStress &sum() const { return *expansions; }
   /// The points, in a periodic cell wrapped into it.
   const std::vector<Vec3> &at() const { return points; }
 
 private:
-  const LineSystem &system;
+  void take(std::span<const Vec3> given);
+  void add_distant_images(std::vector<SymTensor> &values) const;
+
+  const LineSystem *system;
   std::vector<Vec3> points; ///< wrapped into the periodic cell
   std::unique_ptr<fmm::MultipoleStress> expansions;
 };
@@ -80,6 +100,10 @@ public:
   /// @p part: near leaves out what distant boxes add (a cut-off at the size of the boxes), for comparison.
   MultipoleForces(const LineSystem &system, const fmm::MultipoleSettings &settings, double pair_tolerance,
                   MPI_Comm comm, fmm::Part part = fmm::Part::all);
+  /// The same with a far field that may be kept from an earlier time. The lines are those of @p network; @p images: as in
+  /// ForceEnvironment.
+  MultipoleForces(const LineSystem &system, const fmm::MultipoleSettings &settings, double pair_tolerance,
+                  MPI_Comm comm, FarFieldCache &cache, const Network &network, PeriodicImages *images);
 
   /// Forces on line number @p i of the system, without its own (self_force.h), MPa nm^2. Safe to call from any thread.
   SegmentForces operator()(std::size_t i) const;
@@ -105,6 +129,8 @@ private:
     std::size_t itself = no_line; ///< among the closest
   };
 
+  MultipoleForces(const LineSystem &system, const fmm::MultipoleSettings &settings, double pair_tolerance);
+  std::vector<Vec3> place_points();
   std::vector<Panel> panels_of(std::size_t i) const;
   SegmentForces panel_force(std::size_t i, const Panel &panel, std::size_t first_point) const;
   void replace_near(std::size_t i, const Panel &panel, SegmentForces &force) const;
@@ -119,7 +145,7 @@ private:
   double closest_distance;  ///< of those that closed forms replace
   double longest_panel = 0; ///< nm
   std::vector<std::size_t> first_point;
-  std::unique_ptr<MultipoleField> multipoles;
+  std::shared_ptr<MultipoleField> multipoles;
   std::vector<SymTensor> stress;
 };
 } // namespace ddfem

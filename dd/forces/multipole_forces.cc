@@ -2,10 +2,12 @@
 #include "dd/elasticity/gauss.h"
 #include "dd/elasticity/vectorised/force_kernels.h"
 #include "dd/elasticity/vectorised/stress_kernels.h"
+#include "dd/forces/far_field_cache.h"
 #include "dd/forces/multipole_field.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ddfem
 {
@@ -55,7 +57,7 @@ SegmentForces &operator-=(SegmentForces &f, const SegmentForces &g)
 } // namespace
 
 MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::MultipoleSettings &settings,
-                                 const double pair_tolerance_, MPI_Comm comm, const fmm::Part part)
+                                 const double pair_tolerance_)
     : system(system_), pair_tolerance(std::min(pair_tolerance_, 0.1 * settings.tolerance)),
       n_gauss(n_points_for(tolerance_of_nearest(settings.tolerance))),
       near_distance(near_distance_for(tolerance_of_nearest(settings.tolerance), n_gauss)),
@@ -63,6 +65,30 @@ MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::Multipole
 {
   for (const StraightLine &l : system.lines())
     longest_panel += 2 * (l.end - l.start).norm() / static_cast<double>(system.lines().size());
+}
+
+MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::MultipoleSettings &settings,
+                                 const double pair_tolerance_, MPI_Comm comm, const fmm::Part part)
+    : MultipoleForces(system_, settings, pair_tolerance_)
+{
+  multipoles = std::make_shared<MultipoleField>(system, place_points(), settings);
+  stress = multipoles->stress(comm, part);
+}
+
+MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::MultipoleSettings &settings,
+                                 const double pair_tolerance_, MPI_Comm comm, FarFieldCache &cache,
+                                 const Network &network, PeriodicImages *const images)
+    : MultipoleForces(system_, settings, pair_tolerance_)
+{
+  const std::vector<Vec3> points = place_points();
+  FarFieldCache::Field field = cache.evaluate({system, network, points, settings, images, comm});
+  multipoles = std::move(field.field);
+  stress = std::move(field.stress);
+}
+
+/// Gauss points of all panels.
+std::vector<Vec3> MultipoleForces::place_points()
+{
   const GaussRule rule = gauss_rule(n_gauss);
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < system.lines().size(); ++i)
@@ -73,8 +99,7 @@ MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::Multipole
       for (const double z : rule.points)
         points.emplace_back(line.start + (p.begin + z * (p.end - p.begin)) * (line.end - line.start));
   }
-  multipoles = std::make_unique<MultipoleField>(system, points, settings);
-  stress = multipoles->stress(comm, part);
+  return points;
 }
 
 std::vector<MultipoleForces::Panel> MultipoleForces::panels_of(const std::size_t i) const

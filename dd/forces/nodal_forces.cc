@@ -124,7 +124,14 @@ NodalForces compute_nodal_forces(const Network &network, const ForceSettings &se
                           environment.images);
   std::optional<MultipoleForces> multipoles;
   if (settings.summation.use_multipoles(system.lines().size()))
-    multipoles.emplace(system, fmm::MultipoleSettings{settings.summation.tolerance}, settings.pair_tolerance, comm);
+  {
+    const fmm::MultipoleSettings accuracy{settings.summation.tolerance};
+    if (environment.far_field)
+      multipoles.emplace(system, accuracy, settings.pair_tolerance, comm, *environment.far_field, network,
+                         environment.images);
+    else
+      multipoles.emplace(system, accuracy, settings.pair_tolerance, comm);
+  }
   std::vector<Contributions> by_line(system.lines().size());
   const IndexRange owned = owned_range(by_line.size(), comm);
 #pragma omp parallel for schedule(dynamic, 4)

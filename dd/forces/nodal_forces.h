@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dd/elasticity/segment_force.h"
+#include "dd/forces/far_field_cache.h"
 #include "dd/forces/line_system.h"
 #include "dd/forces/multipole_field.h"
 #include "dd/forces/segment_points.h"
@@ -46,6 +47,7 @@ struct ForceEnvironment
   const PeriodicCell *cell = nullptr;
   PeriodicImages *images = nullptr;
   const SegmentField *correction = nullptr; ///< null or without points: none
+  FarFieldCache *far_field = nullptr;       ///< null: it is computed at every call
 };
 
 /// Nodal forces, MPa nm^2 (= 1e-12 N), sample frame, indexed by NodeIndex::value.

@@ -27,6 +27,7 @@ struct DriverSettings
   TopologySettings topology;
   IntegratorSettings integrator;
   double pair_tolerance = 1e-5;
+  SummationSettings summation = {};
 };
 
 /// A network in an infinite body or, with @p cell, in a periodic one.
@@ -47,6 +48,8 @@ public:
   /// One step of at most @p dt_limit ns.
   IntegratorStep step(const double dt_limit)
   {
+    if (far_field)
+      far_field->begin_step();
     const auto velocity = [&](const Network &n)
     { return glide_velocities(n, forces(n).total, settings.mobility, nullptr); };
     std::vector<double> drag(network.node_capacity(), 0.0);
@@ -86,9 +89,11 @@ public:
     e.applied = applied;
     e.cell = cell;
     e.images = images.get();
-    return compute_nodal_forces(
-        n, {settings.medium, settings.core_cutoff_radius, settings.pair_tolerance, RayDirection::normal}, e,
-        MPI_COMM_SELF);
+    e.far_field = far_field;
+    return compute_nodal_forces(n,
+                                {settings.medium, settings.core_cutoff_radius, settings.pair_tolerance,
+                                 RayDirection::normal, settings.summation},
+                                e, MPI_COMM_SELF);
   }
 
   TopologyContext context(std::vector<Vec3> displacement)
@@ -132,6 +137,7 @@ public:
   double time = 0;                       ///< ns
   TopologyCounts counts;
   bool remeshing = true;
+  FarFieldCache *far_field = nullptr;
 
 private:
   double line_tension() const

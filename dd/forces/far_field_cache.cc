@@ -1,0 +1,218 @@
+#include "dd/forces/far_field_cache.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace ddfem
+{
+namespace
+{
+/// How far a point may lie outside its leaf, in sizes of the leaf: local expansions converge less and less there.
+constexpr double farthest_of_leaf = 0.1;
+/// How far the middle of a line may lie outside its box, in box sizes, when the moments of the box are computed again.
+constexpr double farthest_in_same_tree = 0.1;
+/// Change of the number of lines after which a tree is made anew.
+constexpr double largest_change = 0.1;
+/// The displacement up to which a measured growth of the error is trusted, in those it was measured at.
+constexpr double trusted_growth = 2;
+/// Displacement by which the second order of a motion acts, relative to its square in sizes of the smallest box (measured).
+constexpr double curvature_weight = 2;
+/// Part of the allowed displacement by which changes of topology may be taken for motion.
+constexpr double negligible_jump = 0.05;
+/// Leaves in which errors are measured: a sixteenth, but some in small trees.
+constexpr std::size_t largest_stride = 16, fewest_leaves = 32;
+
+FarFieldCache::Field fresh(const FieldRequest &r, const fmm::Part part)
+{
+  auto field = std::make_shared<MultipoleField>(r.system, r.points, r.settings);
+  std::vector<SymTensor> stress = field->stress(r.comm, part);
+  return {std::move(field), std::move(stress)};
+}
+
+std::vector<fmm::LineSource> sources_of(const LineSystem &system)
+{
+  std::vector<fmm::LineSource> sources;
+  sources.reserve(system.lines().size());
+  for (const StraightLine &l : system.lines())
+    sources.push_back({l.start, l.end, l.burgers});
+  return sources;
+}
+
+/// Images of the lines beyond the neighbours, for the images of lines that act in the tree.
+void set_images(const FieldRequest &r, const std::vector<fmm::LineSource> &lines)
+{
+  std::vector<LineElement> elements;
+  elements.reserve(lines.size());
+  for (const fmm::LineSource &l : lines)
+    elements.push_back({l.start, l.end, l.burgers});
+  r.images->set_sources(r.system.medium(), elements);
+}
+} // namespace
+
+FarFieldCache::Field FarFieldCache::evaluate(const FieldRequest &request)
+{
+  const bool starts = std::exchange(at_start_of_step, false);
+  if (settings.mode == FarFieldRefresh::never)
+    return fresh(request, fmm::Part::near);
+  std::optional<Placement> placement = place(request);
+  if (starts && (!placement || is_due(request, *placement)))
+    return refresh(request, std::move(placement));
+  if (!placement || !is_allowed(request, *placement))
+  {
+    ++n.without;
+    return fresh(request, fmm::Part::all);
+  }
+  ++n.kept;
+  move(request, *placement);
+  return {kept->field, kept->field->stress_with_kept_far_field(request.comm, placement->lines.ahead)};
+}
+
+std::optional<FarFieldCache::Placement> FarFieldCache::place(const FieldRequest &request) const
+{
+  if (!kept || settings.mode == FarFieldRefresh::every_evaluation || !request.system.rays().empty())
+    return {};
+  const fmm::Octree &tree = kept->field->sum().octree();
+  auto lines = kept->lines.place(request.network, request.system, tree);
+  if (!lines)
+    return {};
+  Placement placement{std::move(*lines), std::vector<std::uint32_t>(request.points.size())};
+  bool all_near = true;
+#pragma omp parallel for schedule(static) reduction(&& : all_near)
+  for (std::size_t i = 0; i < request.points.size(); ++i)
+  {
+    const Vec3 x = request.points[i] + request.system.shift_into_cell(request.points[i]);
+    const std::uint32_t leaf = placement.leaf_of_point[i] = tree.leaf_at(x);
+    all_near = all_near && tree.distance_outside(leaf, x) <= farthest_of_leaf * tree.size(tree.boxes()[leaf]);
+  }
+  if (!all_near)
+    return {};
+  return placement;
+}
+
+/// By which the error is estimated: what the extrapolation leaves of the motion, and its curvature as a displacement.
+double FarFieldCache::displacement_of(const Placement &placement) const
+{
+  const fmm::Octree &tree = kept->field->sum().octree();
+  const LinesInBoxes &l = placement.lines;
+  return std::hypot(l.displacement, l.jump) + curvature_weight * l.curvature / tree.size(tree.boxes().back());
+}
+
+double FarFieldCache::tolerated_error(const FieldRequest &request) const
+{
+  return settings.share_of_tolerance * request.settings.tolerance;
+}
+
+double FarFieldCache::allowed_displacement(const FieldRequest &request) const
+{
+  return growth.allowed(tolerated_error(request));
+}
+
+double FarFieldCache::Growth::allowed(const double tolerated) const
+{
+  return rate > 0 ? std::min(tolerated / rate, trusted) : trusted;
+}
+
+void FarFieldCache::Growth::learn(const double tolerated, const double error, const double displacement)
+{
+  if (displacement == 0)
+    return;
+  const double before = allowed(tolerated);
+  // What small errors consist of besides need not grow: they only bound the rate from above.
+  const double measured = error / displacement;
+  if (rate == 0 || error > 0.5 * tolerated)
+    rate = measured;
+  else
+    rate = std::clamp(measured, 0.5 * rate, rate);
+  trusted = trusted_growth * std::max(displacement, before);
+}
+
+bool FarFieldCache::is_due(const FieldRequest &request, const Placement &placement)
+{
+  ++kept->n_steps;
+  if (settings.mode == FarFieldRefresh::every_n_steps)
+    return kept->n_steps >= settings.interval;
+  // All of the step that begins should use one far field. Its displacement grows by about half more than in the last one.
+  const double now = displacement_of(placement), last_step = now - std::exchange(kept->at_last_start, now);
+  return now + 1.5 * std::max(0.0, last_step) > allowed_displacement(request);
+}
+
+bool FarFieldCache::is_allowed(const FieldRequest &request, const Placement &placement) const
+{
+  return settings.mode == FarFieldRefresh::every_n_steps || displacement_of(placement) <= allowed_displacement(request);
+}
+
+bool FarFieldCache::tree_is_good(const std::optional<Placement> &placement, const std::size_t n_lines) const
+{
+  if (!placement || settings.mode != FarFieldRefresh::adaptive || placement->lines.farthest > farthest_in_same_tree)
+    return false;
+  const auto now = static_cast<double>(n_lines), then = static_cast<double>(kept->n_lines);
+  return std::abs(now - then) <= largest_change * then;
+}
+
+FarFieldCache::Field FarFieldCache::refresh(const FieldRequest &request, std::optional<Placement> placement)
+{
+  ++n.refreshed;
+  return tree_is_good(placement, request.system.lines().size()) ? refresh_in_same_tree(request, std::move(*placement))
+                                                                : refresh_in_new_tree(request);
+}
+
+FarFieldCache::Field FarFieldCache::refresh_in_new_tree(const FieldRequest &request)
+{
+  ++n.trees;
+  const std::unique_ptr<Kept> before = std::move(kept);
+  Field result = fresh(request, fmm::Part::all);
+  if (!request.system.rays().empty() || settings.mode == FarFieldRefresh::every_evaluation)
+    return result;
+  const std::vector<fmm::LineSource> lines = sources_of(request.system);
+  kept = std::make_unique<Kept>(Kept{result.field,
+                                     {request.network, lines, result.field->sum().octree().boxes_of_lines(),
+                                      before ? &before->lines : nullptr, request.system.cell()},
+                                     lines.size()});
+  if (before && settings.mode == FarFieldRefresh::adaptive)
+    result.field->set_earlier(kept->lines.earlier(request.network, lines));
+  else
+    kept->lines.forget_motion();
+  return result;
+}
+
+FarFieldCache::Field FarFieldCache::refresh_in_same_tree(const FieldRequest &request, Placement placement)
+{
+  MultipoleField &field = *kept->field;
+  const std::size_t stride = std::clamp<std::size_t>(field.sum().n_leaves() / fewest_leaves, 1, largest_stride);
+  move(request, placement);
+  displacement = displacement_of(placement);
+  const std::vector<std::size_t> sample = field.sum().points_of_leaves(stride);
+  const auto in_sample = [&](const fmm::Part part) {
+    return field.sum().stress_with_kept_far_field(request.comm, {placement.lines.ahead, stride, part});
+  };
+  const std::vector<SymTensor> far = in_sample(fmm::Part::far), close = in_sample(fmm::Part::near);
+
+  const bool has_jumped = placement.lines.has_corrections(request.system.lines().size()) ||
+                          placement.lines.jump > negligible_jump * allowed_displacement(request);
+  placement.lines.drop_corrections(request.system.lines().size());
+  FrozenLines lines(request.network, placement.lines.lines, placement.lines.box, &kept->lines, request.system.cell());
+  move(request, placement);
+  std::vector<SymTensor> stress = field.stress_with_new_far_field(request.comm);
+  double difference = 0, scale = 0;
+  for (const std::size_t i : sample)
+  {
+    difference += (far[i] + close[i] + field.stress_of_distant_images(i) - stress[i]).squaredNorm();
+    scale += far[i].squaredNorm();
+  }
+  error = scale > 0 ? std::sqrt(difference / scale) : 0.0;
+  growth.learn(tolerated_error(request), error, displacement);
+  // The far field before holds other lines: without the changes of topology, motion remains.
+  if (has_jumped)
+    field.set_earlier(lines.earlier(request.network, placement.lines.lines));
+  kept = std::make_unique<Kept>(Kept{kept->field, std::move(lines), kept->n_lines});
+  return {kept->field, std::move(stress)};
+}
+
+void FarFieldCache::move(const FieldRequest &request, const Placement &placement)
+{
+  kept->field->move(request.system, request.points, placement.lines, placement.leaf_of_point);
+  if (request.images && !placement.lines.in_system_frame)
+    set_images(request, placement.lines.lines);
+}
+} // namespace ddfem
