@@ -283,12 +283,11 @@ void add_numerics(std::vector<ParameterEntry> &t)
        "Sums over lines: every pair in closed form (direct), a fast multipole method, or the latter for forces and "
        "field "
        "points from 2000 segments on, and on the surface from as many pairs of sources and points as those have."});
+  t.push_back({"Forces", "Far-field tolerance", "1e-3", between(1e-8, 1e-1), "",
+               "Error of the fast multipole method relative to the rms of the far field, a fifth or less relative to "
+               "the total; a tenth of it on the surface."});
   t.push_back(
-      {"Forces", "Far-field tolerance", "1e-3", between(1e-8, 1e-1), "",
-       "Error of the fast multipole method relative to the rms of the far field, about a fifth of the total; a tenth "
-       "of it on the surface."});
-  t.push_back(
-      {"Forces", "Far-field refresh", "adaptive", one_of("every evaluation|adaptive|every n steps|never"), "",
+      {"Forces", "Far-field refresh", "every evaluation", one_of("every evaluation|adaptive|every n steps|never"), "",
        "When the far field of the fast multipole method is computed again for the forces: when its estimated "
        "error reaches half of the tolerance (adaptive), or, for comparison, every n steps or never, without it."});
   t.push_back(

@@ -4,7 +4,8 @@
   dd/        never deal.II, fem/, coupling/
   fem/       never dd/, coupling/
   coupling/  both of them
-  tests/dd and tests/fem follow the folder they test; nothing includes tests/, benchmarks/ or examples/ from outside.
+  tests/dd and tests/fem follow the folder they test; nothing includes tests/, benchmarks/, examples/ or samples/ from
+  outside, but for samples/, which tests and benchmarks share.
 
 Two independent readings: the #include lines of the sources and the libraries named in the CMakeLists.txt of a layer;
 and, with --build DIR, the dependencies that the compiler reported for every object (`ninja -t deps`), which also sees
@@ -24,7 +25,7 @@ import tempfile
 from pathlib import Path
 
 DEAL_II = "deal.II"
-NO_PRODUCT = {"tests", "benchmarks", "examples"}
+NO_PRODUCT = {"tests", "benchmarks", "examples", "samples"}
 # folder -> first path components it must not see
 FORBIDDEN = {
     "dd": {DEAL_II, "fem", "coupling"} | NO_PRODUCT,

@@ -17,6 +17,10 @@ int order_at_distance(int order, double distance);
 /// @p shift and @p edges.
 double distance_in_cubes(const Vec3 &shift, const Vec3 &edges);
 
+/// Longest lines of a box, in box sizes. Half of a line may lie outside the box: towards a box at distance 2, the expansion of one
+/// across a corner converges as 0.98^order with lines of half the box, as 0.87^order with a quarter, 0.82^order with an eighth.
+double longest_line(double tolerance);
+
 /// Smallest boxes (nm) whose expansions may leave out the core beyond its second order: of relative order (a/d)^4, at distances d of two
 /// boxes and more.
 double smallest_box(double core_radius, double tolerance);

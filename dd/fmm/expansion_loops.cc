@@ -53,11 +53,20 @@ void add_outer_products(const std::size_t n, const Row *source_moments, const Ro
   }
 }
 
+namespace
+{
+DDFEM_FMM_EVERY_PROCESSOR
+void add_terms(const GradientTerm *terms, const std::size_t n, const Row *from, Row *to)
+{
+  for (std::size_t k = 0; k < n; ++k)
+    to[terms[k].to] += terms[k].factor * from[terms[k].from];
+}
+} // namespace
+
 RowBuffer derivative(const std::vector<GradientTerm> &terms, const RowBuffer &expansion)
 {
   RowBuffer result(expansion.size());
-  for (const GradientTerm &t : terms)
-    result.rows()[t.to] += t.factor * expansion.rows()[t.from];
+  add_terms(terms.data(), terms.size(), expansion.rows(), result.rows());
   return result;
 }
 
@@ -73,16 +82,21 @@ const std::array<std::vector<GradientTerm>, 3> &known_gradient_terms(const int o
   return all[static_cast<std::size_t>(order)];
 }
 
-DDFEM_FMM_EVERY_PROCESSOR
-void contract_harmonics(const std::size_t n, const Row *harmonics, const Row *coefficients, const Row *y, Row *result)
+namespace
 {
-  Row sum[24];
+template <class Rows>
+DDFEM_FMM_INLINE void contract_rows(const std::size_t n, const typename Rows::Row *harmonics,
+                                    const typename Rows::Scalar *coefficients, const typename Rows::Row *y,
+                                    typename Rows::Row *result)
+{
+  typename Rows::Row sum[24];
   for (std::size_t part = 0; part < 3; ++part)
   {
-    Row s[row_width] = {};
+    typename Rows::Row s[row_width] = {};
     for (std::size_t k = 0; k < n; ++k)
     {
-      const Row h = harmonics[k], c = coefficients[3 * k + part];
+      const typename Rows::Row h = harmonics[k];
+      const typename Rows::Scalar *const c = coefficients + (3 * k + part) * row_width;
       for (std::size_t i = 0; i < row_width; ++i)
         s[i] += c[i] * h;
     }
@@ -91,5 +105,20 @@ void contract_harmonics(const std::size_t n, const Row *harmonics, const Row *co
   }
   for (std::size_t c = 0; c < 6; ++c)
     result[c] = sum[c] + y[0] * sum[6 + c] + y[1] * sum[12 + c] + y[2] * sum[18 + c];
+}
+} // namespace
+
+DDFEM_FMM_EVERY_PROCESSOR
+void contract_harmonics(const std::size_t n, const Row *harmonics, const double *coefficients, const Row *y,
+                        Row *result)
+{
+  contract_rows<DoubleRows>(n, harmonics, coefficients, y, result);
+}
+
+DDFEM_FMM_EVERY_PROCESSOR
+void contract_harmonics(const std::size_t n, const WideSingleRows::Row *harmonics, const float *coefficients,
+                        const WideSingleRows::Row *y, WideSingleRows::Row *result)
+{
+  contract_rows<WideSingleRows>(n, harmonics, coefficients, y, result);
 }
 } // namespace ddfem::fmm

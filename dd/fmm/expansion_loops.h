@@ -34,7 +34,10 @@ const std::array<std::vector<GradientTerm>, 3> &known_gradient_terms(int order);
 
 /// Eight points at once. @p coefficients: 24 numbers per harmonic, four groups c of six; @p y: (x - centre)/size; the result, six rows:
 /// c_0 + y_0 c_1 + y_1 c_2 + y_2 c_3.
-void contract_harmonics(std::size_t n, const Row *harmonics, const Row *coefficients, const Row *y, Row *result);
+void contract_harmonics(std::size_t n, const Row *harmonics, const double *coefficients, const Row *y, Row *result);
+/// Sixteen points in single precision.
+void contract_harmonics(std::size_t n, const WideSingleRows::Row *harmonics, const float *coefficients,
+                        const WideSingleRows::Row *y, WideSingleRows::Row *result);
 
 /// A field in one box as contract_harmonics() evaluates it: three rows of coefficients per harmonic, first the components of the field, then
 /// those that are multiplied by y_0, y_1 and y_2.
@@ -44,23 +47,15 @@ template <std::size_t n_values> class LocalExpansion
 
 public:
   /// Adds the field at the points of a batch.
-  void add(const PointBatch<n_values> &batch) const
+  void add(const PointBatch<n_values> &batch) const { add_by<DoubleRows>(batch, coefficients.data()); }
+  /// The same with expansions in single precision: six digits of the largest values.
+  void add_in_single_precision(const PointBatch<n_values> &batch) const
   {
-    const std::size_t n = n_harmonics(degree);
-    alignas(row_size) Row harmonics[n_harmonics(max_order)];
-    for (std::size_t begin = 0; begin < batch.n; begin += row_width)
-    {
-      const std::size_t count = std::min(row_width, batch.n - begin);
-      Row y[3] = {}, result[6];
-      for (std::size_t c = 0; c < 3; ++c)
-        for (std::size_t i = 0; i < count; ++i)
-          y[c][i] = (batch.x[c][begin + i] - centre[static_cast<int>(c)]) / size;
-      regular_harmonics(degree, y, harmonics);
-      contract_harmonics(n, harmonics, coefficients.rows(), y, result);
-      for (std::size_t c = 0; c < n_values; ++c)
-        for (std::size_t i = 0; i < count; ++i)
-          batch.value[c][begin + i] += result[c][i];
-    }
+    const double *const from = coefficients.data();
+    std::vector<float> single(coefficients.size() * row_width);
+    for (std::size_t k = 0; k < single.size(); ++k)
+      single[k] = static_cast<float>(from[k]);
+    add_by<WideSingleRows>(batch, single.data());
   }
 
 protected:
@@ -70,6 +65,28 @@ protected:
   {
   }
 
+private:
+  template <class Rows> void add_by(const PointBatch<n_values> &batch, const typename Rows::Scalar *const numbers) const
+  {
+    using Scalar = typename Rows::Scalar;
+    const std::size_t n = n_harmonics(degree);
+    alignas(row_size) typename Rows::Row harmonics[n_harmonics(max_order)];
+    for (std::size_t begin = 0; begin < batch.n; begin += Rows::width)
+    {
+      const std::size_t count = std::min(Rows::width, batch.n - begin);
+      alignas(row_size) typename Rows::Row y[3] = {}, result[6];
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t i = 0; i < count; ++i)
+          y[c][i] = static_cast<Scalar>((batch.x[c][begin + i] - centre[static_cast<int>(c)]) / size);
+      regular_harmonics(degree, y, harmonics);
+      contract_harmonics(n, harmonics, numbers, y, result);
+      for (std::size_t c = 0; c < n_values; ++c)
+        for (std::size_t i = 0; i < count; ++i)
+          batch.value[c][begin + i] += static_cast<double>(result[c][i]);
+    }
+  }
+
+protected:
   int degree;
   Vec3 centre;
   double size;

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -157,10 +157,6 @@ private:
   struct Task
   {
     std::uint32_t translation, target, source;
-    bool operator<(const Task &o) const
-    {
-      return std::tie(translation, target, source) < std::tie(o.translation, o.target, o.source);
-    }
   };
 
   void moments_of(const std::size_t index, const AddToBox &add_own_moments)
@@ -207,14 +203,31 @@ private:
       rows[k][column] = from.q[k] - (dx * from.fields[k][0] + dy * from.fields[k][1] + dz * from.fields[k][2]);
   }
 
+  /// Of boxes [begin, end), in a fixed order.
+  std::vector<Task> tasks_by_translation(const std::uint32_t begin, const std::uint32_t end,
+                                         std::span<const std::uint8_t> wanted) const
+  {
+    std::vector<std::uint32_t> place(across.size() + 1, 0); // of the first task of each translation
+    const auto for_each_task = [&](auto &&visit)
+    {
+      for (std::uint32_t i = begin; i < end; ++i)
+        if (wanted[i] != 0)
+          for (const FarLink &l : tree.far_links(i))
+            visit(across.number(l.offset), i, l.box);
+    };
+    for_each_task([&](std::uint32_t translation, std::uint32_t, std::uint32_t) { ++place[translation + 1]; });
+    std::partial_sum(place.begin(), place.end(), place.begin());
+    std::vector<Task> tasks(place.back());
+    for_each_task(
+        [&](std::uint32_t translation, std::uint32_t target, std::uint32_t source) {
+          tasks[place[translation]++] = {translation, target, source};
+        });
+    return tasks;
+  }
+
   void translate_chunk(const std::uint32_t begin, const std::uint32_t end, std::span<const std::uint8_t> wanted)
   {
-    std::vector<Task> tasks;
-    for (std::uint32_t i = begin; i < end; ++i)
-      if (wanted[i] != 0)
-        for (const FarLink &l : tree.far_links(i))
-          tasks.push_back({across.number(l.offset), i, l.box});
-    std::sort(tasks.begin(), tasks.end());
+    const std::vector<Task> tasks = tasks_by_translation(begin, end, wanted);
     for (std::size_t first = 0, last = 0; first < tasks.size(); first = last)
     {
       while (last < tasks.size() && last - first < wide && tasks[last].translation == tasks[first].translation)
@@ -263,8 +276,18 @@ void Passes<Scalar>::add_far(const BasicTranslation<Scalar> &translation, const 
   for (; i + 1 < tasks.size(); i += 2)
     translation.add_two({multipole.of(tasks[i].source).fields, multipole.of(tasks[i + 1].source).fields},
                         {local.of(tasks[i].target).fields, local.of(tasks[i + 1].target).fields});
-  if (i < tasks.size())
-    translation.add(multipole.of(tasks[i].source).fields, local.of(tasks[i].target).fields);
+  if (i == tasks.size())
+    return add_far_q(translation, tasks);
+  const BoxExpansion<Scalar> source = multipole.of(tasks[i].source), target = local.of(tasks[i].target);
+  if constexpr (std::is_same_v<
+                    Scalar,
+                    float>) // as one of two: which ones are single depends on the wanted boxes, rounding may not
+  {
+    alignas(row_size) Row nowhere[n_harmonics(max_order)] = {};
+    translation.add_two({source.fields, source.fields}, {target.fields, nowhere});
+  }
+  else
+    translation.add(source.fields, target.fields);
   add_far_q(translation, tasks);
 }
 

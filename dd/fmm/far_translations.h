@@ -40,6 +40,7 @@ public:
         }
   }
 
+  std::size_t size() const { return std::max(translations.size(), with_integrals.size()); }
   std::uint32_t number(const std::array<std::int16_t, 3> &offset) const { return numbers[place(offset)]; }
   const BasicTranslation<Scalar> &translation(std::uint32_t number) const { return translations[number]; }
   /// Instead, with antiderivatives.

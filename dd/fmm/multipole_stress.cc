@@ -110,7 +110,11 @@ void MultipoleStress::add_distant(const Box &box, const ExpansionView &expansion
 
 void MultipoleStress::add_far(const Box &leaf, const Row *const fields, const double *const q)
 {
-  LocalStress(medium, order(), octree().centre(leaf), octree().size(leaf), fields, q).add(batch_of<6>(leaf));
+  const LocalStress local(medium, order(), octree().centre(leaf), octree().size(leaf), fields, q);
+  if (single_precision())
+    local.add_in_single_precision(batch_of<6>(leaf));
+  else
+    local.add(batch_of<6>(leaf));
 }
 
 void MultipoleStress::add_near(const std::size_t leaf)

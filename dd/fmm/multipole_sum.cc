@@ -37,6 +37,8 @@ TreeSettings tree_settings(const MultipoleSettings &settings, const int order, c
   };
   for (int distance2 = 0; distance2 <= 27; ++distance2)
     s.translation_cost.push_back(settings.translation_cost_factor * cost(std::sqrt(distance2)));
+  if (n_antiderivatives == 0)
+    s.longest_line = longest_line(settings.tolerance);
   s.smallest_box = smallest_box;
   s.depth = settings.depth;
   return s;
@@ -48,11 +50,11 @@ int order_for_shape(const int order, const Vec3 &edges)
   return order_at_distance(order, distance_in_cubes(Vec3(2 * edges.minCoeff(), 0, 0), edges));
 }
 
-/// Of the moments. Integration lowers the degree, and two more keep the error that others have (measured).
+/// Of the moments. Integration lowers the degree, and one more keeps the error that others have (measured).
 int order_of(const MultipoleSettings &settings, const int n_antiderivatives)
 {
   const int order = settings.order > 0 ? settings.order : expansion_order(settings.tolerance);
-  return std::min(order + (n_antiderivatives > 0 ? n_antiderivatives + 2 : 0), max_order);
+  return std::min(order + (n_antiderivatives > 0 ? n_antiderivatives + 1 : 0), max_order);
 }
 } // namespace
 

@@ -111,6 +111,8 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
 void Octree::place_spheres()
 {
   spheres = {};
+  for (std::vector<double> *const v : {&spheres.x, &spheres.y, &spheres.z, &spheres.radius})
+    v->reserve(line_at.size());
   for (const std::uint32_t i : line_at)
   {
     spheres.x.push_back(line_middle[i][0]);
@@ -133,6 +135,8 @@ int Octree::root_at(const Vec3 &x) const
 
 void Octree::sort_into_roots(const std::span<const SourceExtent> sources, const std::span<const Vec3> points)
 {
+  line_middle.reserve(sources.size());
+  line_length.reserve(sources.size());
   for (const SourceExtent &s : sources)
   {
     line_middle.push_back(s.middle);

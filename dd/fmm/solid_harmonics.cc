@@ -11,57 +11,75 @@ namespace ddfem::fmm
 namespace
 {
 /// Factors of the recurrences, for all degrees up to max_order.
-struct Recurrence
+template <class Scalar> struct Recurrence
 {
-  std::array<double, max_order + 1> diagonal{};                 ///< S_mm from S_m-1,m-1
-  std::array<double, n_harmonics(max_order)> first{}, second{}; ///< S_l from S_l-1 and S_l-2
+  std::array<Scalar, max_order + 1> diagonal{};                 ///< S_mm from S_m-1,m-1
+  std::array<Scalar, n_harmonics(max_order)> first{}, second{}; ///< S_l from S_l-1 and S_l-2
 
   Recurrence()
   {
     for (int m = 1; m <= max_order; ++m)
-      diagonal[static_cast<std::size_t>(m)] = m == 1 ? 1.0 : std::sqrt((2.0 * m - 1.0) / (2.0 * m));
+      diagonal[static_cast<std::size_t>(m)] =
+          static_cast<Scalar>(m == 1 ? 1.0 : std::sqrt((2.0 * m - 1.0) / (2.0 * m)));
     for (int l = 1; l <= max_order; ++l)
       for (int m = 0; m < l; ++m)
       {
         const double root = std::sqrt(static_cast<double>(l * l - m * m));
-        first[harmonic_index(l, m)] = (2.0 * l - 1.0) / root;
-        second[harmonic_index(l, m)] = std::sqrt(static_cast<double>((l - 1) * (l - 1) - m * m)) / root;
+        first[harmonic_index(l, m)] = static_cast<Scalar>((2.0 * l - 1.0) / root);
+        second[harmonic_index(l, m)] =
+            static_cast<Scalar>(std::sqrt(static_cast<double>((l - 1) * (l - 1) - m * m)) / root);
       }
   }
 };
 
 /// All degrees for one m (and -m), upwards from l = m.
-DDFEM_FMM_INLINE void raise_degree(const Recurrence &factor, int order, int m, int sign, const Row &z, const Row &r2,
-                                   Row *s)
+template <class Rows>
+DDFEM_FMM_INLINE void raise_degree(const Recurrence<typename Rows::Scalar> &factor, int order, int m, int sign,
+                                   const typename Rows::Row &z, const typename Rows::Row &r2, typename Rows::Row *s)
 {
   for (int l = m + 1; l <= order; ++l)
   {
     const std::size_t k = harmonic_index(l, m);
-    Row value = factor.first[k] * z * s[harmonic_index(l - 1, sign * m)];
+    typename Rows::Row value = factor.first[k] * z * s[harmonic_index(l - 1, sign * m)];
     if (l > m + 1)
       value -= factor.second[k] * r2 * s[harmonic_index(l - 2, sign * m)];
     s[harmonic_index(l, sign * m)] = value;
   }
 }
 
-DDFEM_FMM_EVERY_PROCESSOR
-void evaluate(const Recurrence &factor, int order, const Row *points, Row *s)
+template <class Rows>
+DDFEM_FMM_INLINE void evaluate_rows(const Recurrence<typename Rows::Scalar> &factor, int order,
+                                    const typename Rows::Row *points, typename Rows::Row *s)
 {
+  using Row = typename Rows::Row;
   const Row x = points[0], y = points[1], z = points[2];
   const Row r2 = x * x + y * y + z * z;
-  s[0] = Row{} + 1.0;
-  raise_degree(factor, order, 0, 1, z, r2, s);
+  s[0] = Row{} + typename Rows::Scalar{1};
+  raise_degree<Rows>(factor, order, 0, 1, z, r2, s);
   for (int m = 1; m <= order; ++m)
   {
-    const double f = factor.diagonal[static_cast<std::size_t>(m)];
+    const typename Rows::Scalar f = factor.diagonal[static_cast<std::size_t>(m)];
     const Row c = s[harmonic_index(m - 1, m - 1)];
     const Row d = m == 1 ? Row{} : s[harmonic_index(m - 1, 1 - m)];
     s[harmonic_index(m, m)] = f * (x * c - y * d);
     s[harmonic_index(m, -m)] = f * (x * d + y * c);
-    raise_degree(factor, order, m, 1, z, r2, s);
-    raise_degree(factor, order, m, -1, z, r2, s);
+    raise_degree<Rows>(factor, order, m, 1, z, r2, s);
+    raise_degree<Rows>(factor, order, m, -1, z, r2, s);
   }
 }
+
+DDFEM_FMM_EVERY_PROCESSOR
+void evaluate(const Recurrence<double> &factor, int order, const Row *points, Row *s)
+{
+  evaluate_rows<DoubleRows>(factor, order, points, s);
+}
+
+DDFEM_FMM_EVERY_PROCESSOR
+void evaluate(const Recurrence<float> &factor, int order, const WideSingleRows::Row *points, WideSingleRows::Row *s)
+{
+  evaluate_rows<WideSingleRows>(factor, order, points, s);
+}
+
 /// Adds weight a_i b_j to the two blocks of degree @p l; returns the end of the blocks.
 double *add_products(const int l, const double weight, const double *a, const double *b, double *entry)
 {
@@ -78,7 +96,13 @@ double *add_products(const int l, const double weight, const double *a, const do
 
 void regular_harmonics(const int order, const Row *points, Row *values)
 {
-  static const Recurrence factor;
+  static const Recurrence<double> factor;
+  evaluate(factor, order, points, values);
+}
+
+void regular_harmonics(const int order, const WideSingleRows::Row *points, WideSingleRows::Row *values)
+{
+  static const Recurrence<float> factor;
   evaluate(factor, order, points, values);
 }
 

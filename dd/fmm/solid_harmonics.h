@@ -17,7 +17,7 @@
 namespace ddfem::fmm
 {
 /// Highest degree of the expansions; enough for errors of 1e-8.
-inline constexpr int max_order = 34;
+inline constexpr int max_order = 36;
 
 /// Number of harmonics of degree 0 to @p order.
 constexpr std::size_t n_harmonics(int order)
@@ -36,6 +36,8 @@ constexpr std::size_t harmonic_index(int l, int m)
 /// Values of all harmonics up to @p order at eight points: @p points holds the rows x, y, z; @p values gets n_harmonics()
 /// rows.
 void regular_harmonics(int order, const Row *points, Row *values);
+/// The same at sixteen points in single precision.
+void regular_harmonics(int order, const WideSingleRows::Row *points, WideSingleRows::Row *values);
 
 /// One term of the gradient of an expansion sum c_lm S_lm: coefficient `to` of the derivative gets factor c_from.
 struct GradientTerm

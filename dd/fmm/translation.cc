@@ -15,6 +15,7 @@ template <class Scalar> using Blocks = std::shared_ptr<const std::vector<Scalar>
 template <class Scalar> std::vector<Scalar> in_precision(const std::vector<double> &numbers)
 {
   std::vector<Scalar> result;
+  result.reserve(numbers.size());
   for (const double x : numbers)
     result.push_back(static_cast<Scalar>(x));
   return result;
@@ -147,7 +148,10 @@ template <class Rows>
 DDFEM_FMM_INLINE void translate_rows(const Factors<typename Rows::Scalar> &factors, const typename Rows::Row *source,
                                      typename Rows::Row *target)
 {
-  auto [order, phase, rotation, axial, backward, axial_place] = factors;
+  const int order = factors.order;
+  const typename Rows::Scalar *const phase = factors.phase, *rotation = factors.rotation, *axial = factors.axial,
+                                     *backward = factors.backward;
+  const std::uint16_t *const axial_place = factors.axial_place;
   alignas(row_size) typename Rows::Row a[n_harmonics(max_order)];
   alignas(row_size) typename Rows::Row b[n_harmonics(max_order)];
   turn_to_axis<Rows>(order, phase, source, a);

@@ -24,17 +24,20 @@ inline constexpr std::size_t row_size = row_width * sizeof(double);
 struct DoubleRows
 {
   using Scalar = double;
+  static constexpr std::size_t width = row_width;
   using Row = double __attribute__((vector_size(row_size), aligned(sizeof(double)), may_alias));
 };
 struct SingleRows
 {
   using Scalar = float;
+  static constexpr std::size_t width = row_width;
   using Row = float __attribute__((vector_size(row_size / 2), aligned(sizeof(float)), may_alias));
 };
 /// Two SingleRows side by side.
 struct WideSingleRows
 {
   using Scalar = float;
+  static constexpr std::size_t width = 2 * row_width;
   using Row = float __attribute__((vector_size(row_size), aligned(sizeof(float)), may_alias));
 };
 using Row = DoubleRows::Row;
@@ -73,6 +76,7 @@ public:
   void set_zero() { numbers.assign(numbers.size(), 0.0); }
   Row *rows() { return reinterpret_cast<Row *>(numbers.data()); }
   const Row *rows() const { return reinterpret_cast<const Row *>(numbers.data()); }
+  const double *data() const { return numbers.data(); }
   double &operator()(std::size_t row, std::size_t column) { return numbers[row * row_width + column]; }
   double operator()(std::size_t row, std::size_t column) const { return numbers[row * row_width + column]; }
 

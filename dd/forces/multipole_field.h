@@ -28,8 +28,8 @@ enum class SummationMethod : std::uint8_t
 struct SummationSettings
 {
   SummationMethod method = SummationMethod::automatic;
-  /// Error of the far stress relative to its rms, 1e-8 to 0.1 (of the total stress: about a fifth of it); the error of
-  /// quadrature along the lines is kept below it.
+  /// Error of the far stress relative to its rms, 1e-8 to 0.1, and of the nodal forces relative to those of the far stress. Of the
+  /// total it is a fifth to a hundredth.
   double tolerance = 1e-3;
   /// Above the size at which both methods take the same time.
   std::size_t multipole_from = 2000;
@@ -72,6 +72,8 @@ public:
 
   fmm::MultipoleStress &sum() { return *expansions; }
   const fmm::MultipoleStress &sum() const { return *expansions; }
+  /// The points, in a periodic cell wrapped into it.
+  const std::vector<Vec3> &at() const { return points; }
 
 private:
   void take(std::span<const Vec3> given);
@@ -85,15 +87,17 @@ private:
 /**
  * Forces on the ends of the lines of a system from all other lines, rays and images. The stress is taken at Gauss points of
  * panels (pieces of lines of similar length). Where a source is too near to a panel for the rule, its contribution
- * to the rule is replaced by the force in closed form (segment_force.h): connected and close pairs are exact. A panel of half
- * length h with n points integrates a source at distance d with a relative error of about rho^-2n, rho = d/h +
- * sqrt(1 + (d/h)^2) (Trefethen, SIAM Rev. 50 (2008) 67, eq. 4.15): the switch.
+ * to the rule is replaced by that to a rule of one point more or, nearer by, by the force in closed form (segment_force.h): connected
+ * and close pairs are exact. A panel of half length h with n points integrates a source at distance d from its middle with a
+ * relative error of about rho^-(2n-1), d/h = (rho + 1/rho)/2: rho^-2n (Trefethen, SIAM Rev. 50 (2008) 67, eq. 4.15) times the
+ * size of the shape functions on the ellipse, about rho/4. This decides.
  */
 class MultipoleForces
 {
 public:
-  /// Computes the stress at all Gauss points. Collective. @p pair_tolerance: of the forces in closed form. @p part: near
-  /// leaves out what distant boxes add (a cut-off at the size of the boxes), for comparison.
+  /// Computes the stress at all Gauss points. Collective. @p pair_tolerance: of the forces in closed form, at most a
+  /// tenth of the tolerance of the settings: their sum, up to a hundred times the far force, is ten to a hundred times more accurate.
+  /// @p part: near leaves out what distant boxes add (a cut-off at the size of the boxes), for comparison.
   MultipoleForces(const LineSystem &system, const fmm::MultipoleSettings &settings, double pair_tolerance,
                   MPI_Comm comm, fmm::Part part = fmm::Part::all);
   /// The same with a far field that may be kept from an earlier time. The lines are those of @p network; @p images: as in
@@ -104,8 +108,11 @@ public:
   /// Forces on line number @p i of the system, without its own (self_force.h), MPa nm^2. Safe to call from any thread.
   SegmentForces operator()(std::size_t i) const;
 
-  /// For measurements.
+  /// For measurements: the field at the Gauss points, their number on a panel, and the first one of line number @p i; those of
+  /// its panels follow, and then those of the next line.
   const MultipoleField &field() const { return *multipoles; }
+  int n_gauss_points() const { return n_gauss; }
+  std::size_t first_point_of(std::size_t i) const { return i < first_point.size() ? first_point[i] : stress.size(); }
 
 private:
   /// Piece [begin, end] (fractions) of a line.
@@ -117,8 +124,9 @@ private:
   /// Lines too near to a panel for its rule, among them the panel's own.
   struct NearSources
   {
-    LineTable table;
-    std::size_t itself = no_line;
+    LineTable closest;            ///< by closed forms
+    LineTable others;             ///< by a rule of one point more
+    std::size_t itself = no_line; ///< among the closest
   };
 
   MultipoleForces(const LineSystem &system, const fmm::MultipoleSettings &settings, double pair_tolerance);
@@ -134,6 +142,7 @@ private:
   double pair_tolerance;
   int n_gauss;              ///< points per panel
   double near_distance;     ///< of sources that are replaced, in half lengths of the panel
+  double closest_distance;  ///< of those that closed forms replace
   double longest_panel = 0; ///< nm
   std::vector<std::size_t> first_point;
   std::shared_ptr<MultipoleField> multipoles;

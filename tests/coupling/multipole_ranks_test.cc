@@ -1,7 +1,7 @@
 // The fast multipole method on several ranks.
 #include "dd/forces/far_field_cache.h"
 #include "dd/forces/nodal_forces.h"
-#include "tests/dd/fmm/systems_of_lines.h"
+#include "samples/systems_of_lines.h"
 
 #include <gtest/gtest.h>
 
@@ -11,16 +11,16 @@ namespace
 {
 TEST(MultipoleRanks, ForcesAndStressesAreTheSameBitsOnAnyNumberOfRanks)
 {
-  const test::LinesOfTest lines = test::clustered_loops(100);
+  const samples::SampleLines lines = samples::clustered_loops(100);
   const LineSystem system = lines.system();
-  ForceSettings settings{test::copper_like, test::copper_like.a, 1e-4};
+  ForceSettings settings{samples::copper_like, samples::copper_like.a, 1e-4};
   settings.summation.method = SummationMethod::multipole;
   const auto alone = compute_nodal_forces(lines.network, settings, {}, MPI_COMM_SELF).total;
   const auto together = compute_nodal_forces(lines.network, settings, {}, MPI_COMM_WORLD).total;
   EXPECT_TRUE(alone == together);
 
   std::vector<Vec3> points;
-  test::RandomVectors random(1);
+  samples::RandomVectors random(1);
   for (int k = 0; k < 1000; ++k)
     points.push_back(500 * random.vector());
   const auto field = [&](MPI_Comm comm) { return MultipoleField(system, points, {1e-3}).stress(comm); };
@@ -29,8 +29,8 @@ TEST(MultipoleRanks, ForcesAndStressesAreTheSameBitsOnAnyNumberOfRanks)
 
 TEST(MultipoleRanks, AKeptFarFieldGivesTheSameBitsOnAnyNumberOfRanks)
 {
-  test::LinesOfTest lines = test::clustered_loops(150);
-  ForceSettings settings{test::copper_like, test::copper_like.a, 1e-4};
+  samples::SampleLines lines = samples::clustered_loops(150);
+  ForceSettings settings{samples::copper_like, samples::copper_like.a, 1e-4};
   settings.summation.method = SummationMethod::multipole;
   FarFieldCache cache_alone({FarFieldRefresh::adaptive}), cache_together({FarFieldRefresh::adaptive});
   for (int step = 0; step < 6; ++step)
@@ -45,7 +45,7 @@ TEST(MultipoleRanks, AKeptFarFieldGivesTheSameBitsOnAnyNumberOfRanks)
     EXPECT_TRUE(forces(cache_alone, MPI_COMM_SELF) == forces(cache_together, MPI_COMM_WORLD)) << step;
     for (const NodeIndex i : lines.network.nodes())
     {
-      test::RandomVectors random(i.value + 1);
+      samples::RandomVectors random(i.value + 1);
       lines.network.set_position(i, lines.network.position(i) + 0.1 * random.vector());
     }
   }
@@ -55,10 +55,10 @@ TEST(MultipoleRanks, AKeptFarFieldGivesTheSameBitsOnAnyNumberOfRanks)
 
 TEST(MultipoleRanks, MorePartsThanLeavesAreEmpty)
 {
-  const test::LinesOfTest lines = test::random_loops(1);
+  const samples::SampleLines lines = samples::random_loops(1);
   const LineSystem system = lines.system();
   const std::vector<Vec3> points{Vec3(1, 2, 3)};
-  const auto value = MultipoleField(system, points, {1e-3}).stress(MPI_COMM_WORLD);
+  const auto value = MultipoleField(system, points, {1e-6}).stress(MPI_COMM_WORLD);
   EXPECT_LT((value[0] - system.stress(points[0])).norm(), 1e-12 * value[0].norm());
 }
 } // namespace

@@ -2,7 +2,7 @@
 #include "dd/crystal/material.h"
 #include "dd/forces/far_field_cache.h"
 #include "dd/forces/nodal_forces.h"
-#include "tests/dd/fmm/systems_of_lines.h"
+#include "samples/systems_of_lines.h"
 #include "tests/dd/topology/dislocation_driver.h"
 #include "tests/dd/topology/random_networks.h"
 
@@ -19,15 +19,15 @@ namespace ddfem
 {
 namespace
 {
-using namespace test;
+using namespace samples;
 
 constexpr double tolerance = 1e-3;
 
 /// Straight lines of 24 segments of 25 nm; some cross the boundaries of the cell.
-LinesOfTest straight_lines(const bool periodic)
+SampleLines straight_lines(const bool periodic)
 {
   const Vec3 origin = Vec3::Constant(-500), lengths = Vec3::Constant(1000);
-  LinesOfTest t = periodic ? periodic_loops(0, origin, lengths, 7) : random_loops(0);
+  SampleLines t = periodic ? periodic_loops(0, origin, lengths, 7) : random_loops(0);
   RandomVectors random(8);
   for (int k = 0; k < 140; ++k)
   {
@@ -38,7 +38,7 @@ LinesOfTest straight_lines(const bool periodic)
 }
 
 /// Forces on the ends of all segments.
-std::vector<Vec3> forces(const LinesOfTest &lines, FarFieldCache *const cache)
+std::vector<Vec3> forces(const SampleLines &lines, FarFieldCache *const cache)
 {
   ForceSettings settings{copper_like, copper_like.a, 1e-6};
   settings.summation = {SummationMethod::multipole, tolerance};
@@ -66,7 +66,7 @@ double distance(const std::vector<Vec3> &a, const std::vector<Vec3> &b)
 }
 
 /// Error of the forces relative to what distant boxes add to them.
-double error_of(const LinesOfTest &lines, const std::vector<Vec3> &value)
+double error_of(const SampleLines &lines, const std::vector<Vec3> &value)
 {
   FarFieldCache none({FarFieldRefresh::never});
   const std::vector<Vec3> exact = forces(lines, nullptr);
@@ -109,7 +109,7 @@ class FarFieldCacheIn : public testing::TestWithParam<bool>
 
 TEST_P(FarFieldCacheIn, GivesTheSameBitsWhereNothingHasMoved)
 {
-  const LinesOfTest lines = straight_lines(GetParam());
+  const SampleLines lines = straight_lines(GetParam());
   FarFieldCache cache({FarFieldRefresh::adaptive});
   cache.begin_step();
   const std::vector<Vec3> refreshed = forces(lines, &cache), kept = forces(lines, &cache);
@@ -120,7 +120,7 @@ TEST_P(FarFieldCacheIn, GivesTheSameBitsWhereNothingHasMoved)
 
 TEST_P(FarFieldCacheIn, FollowsNodesThatAreInsertedAndRemoved)
 {
-  LinesOfTest lines = straight_lines(GetParam());
+  SampleLines lines = straight_lines(GetParam());
   FarFieldCache cache({FarFieldRefresh::every_n_steps});
   cache.begin_step();
   forces(lines, &cache);
@@ -139,7 +139,7 @@ TEST_P(FarFieldCacheIn, FollowsNodesThatAreInsertedAndRemoved)
 
 TEST_P(FarFieldCacheIn, HasAnErrorInProportionToTheDisplacement)
 {
-  LinesOfTest lines = straight_lines(GetParam());
+  SampleLines lines = straight_lines(GetParam());
   FarFieldCache cache({FarFieldRefresh::every_n_steps});
   cache.begin_step();
   forces(lines, &cache);
@@ -157,7 +157,7 @@ TEST_P(FarFieldCacheIn, HasAnErrorInProportionToTheDisplacement)
 
 TEST_P(FarFieldCacheIn, ExtrapolatesAlongTheMotionOfTheLines)
 {
-  LinesOfTest lines = straight_lines(GetParam());
+  SampleLines lines = straight_lines(GetParam());
   FarFieldCache cache({FarFieldRefresh::adaptive});
   double largest = 0;
   for (int step = 0; step < 40; ++step)
@@ -175,7 +175,7 @@ TEST_P(FarFieldCacheIn, ExtrapolatesAlongTheMotionOfTheLines)
 
 TEST_P(FarFieldCacheIn, IsNotChangedByEvaluationsWithinAStep)
 {
-  LinesOfTest lines = straight_lines(GetParam());
+  SampleLines lines = straight_lines(GetParam());
   FarFieldCache cache({FarFieldRefresh::adaptive}), undisturbed({FarFieldRefresh::adaptive});
   for (int step = 0; step < 6; ++step)
   {
@@ -204,7 +204,7 @@ TEST_P(FarFieldCacheIn, DoesNotDependOnTheNumberOfThreads)
   for (const int n : {1, 2})
   {
     omp_set_num_threads(n);
-    LinesOfTest lines = straight_lines(GetParam());
+    SampleLines lines = straight_lines(GetParam());
     FarFieldCache cache({FarFieldRefresh::adaptive});
     for (int step = 0; step < 4; ++step)
     {

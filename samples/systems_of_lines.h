@@ -1,19 +1,20 @@
-// Networks on which the fast multipole method is tested.
+// Networks on which the fast multipole method is tested and measured.
 #pragma once
 
 #include "dd/forces/line_system.h"
-#include "tests/dd/elasticity/elasticity_test_helpers.h"
+#include "samples/random_vectors.h"
 
+#include <cmath>
 #include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace ddfem::test
+namespace ddfem::samples
 {
 /// A network with its surroundings.
-struct LinesOfTest
+struct SampleLines
 {
   std::string name;
   Network network;
@@ -55,20 +56,20 @@ inline void add_line(Network &network, const Vec3 &start, const Vec3 &end, const
 }
 
 /// Loops of 16 segments of 25 nm in a cube of 1000 nm.
-inline LinesOfTest random_loops(const int n_loops)
+inline SampleLines random_loops(const int n_loops, const unsigned seed = 3)
 {
-  LinesOfTest t{"random", {}, {}, {}, {}};
-  RandomVectors random(3);
+  SampleLines t{"random", {}, {}, {}, {}};
+  RandomVectors random(seed);
   for (int k = 0; k < n_loops; ++k)
     add_loop(t.network, 500 * random.vector(), 65, 16, random);
   return t;
 }
 
 /// The same, nine tenths of them in a tenth of the volume.
-inline LinesOfTest clustered_loops(const int n_loops)
+inline SampleLines clustered_loops(const int n_loops, const unsigned seed = 4)
 {
-  LinesOfTest t{"clustered", {}, {}, {}, {}};
-  RandomVectors random(4);
+  SampleLines t{"clustered", {}, {}, {}, {}};
+  RandomVectors random(seed);
   const double edge = std::cbrt(0.1);
   for (int k = 0; k < n_loops; ++k)
     add_loop(t.network,
@@ -79,10 +80,10 @@ inline LinesOfTest clustered_loops(const int n_loops)
 }
 
 /// A pillar with loops and with lines that go through its sides and continue as rays.
-inline LinesOfTest pillar(const int n_loops, const int n_lines)
+inline SampleLines pillar(const int n_loops, const int n_lines, const unsigned seed = 5)
 {
-  LinesOfTest t{"pillar", {}, std::make_unique<BoxShape>(Vec3(-300, -300, -600), Vec3(300, 300, 600)), {}, {}};
-  RandomVectors random(5);
+  SampleLines t{"pillar", {}, std::make_unique<BoxShape>(Vec3(-300, -300, -600), Vec3(300, 300, 600)), {}, {}};
+  RandomVectors random(seed);
   for (int k = 0; k < n_loops; ++k)
     add_loop(t.network, random.vector().cwiseProduct(Vec3(230, 230, 530)), 65, 16, random);
   for (int k = 0; k < n_lines; ++k)
@@ -93,38 +94,38 @@ inline LinesOfTest pillar(const int n_loops, const int n_lines)
 }
 
 /// A straight segment of 3000 nm among loops of short ones.
-inline LinesOfTest long_line_among_loops(const int n_loops)
+inline SampleLines long_line_among_loops(const int n_loops, const unsigned seed = 3)
 {
-  LinesOfTest t = random_loops(n_loops);
+  SampleLines t = random_loops(n_loops, seed);
   t.name = "long line";
   add_line(t.network, Vec3(-1500, 10, 20), Vec3(1500, -50, 30), 1, NodeConstraint::pinned, Vec3(0.25, 0, 0.1));
   return t;
 }
 
 /// Loops in a periodic cell.
-inline LinesOfTest periodic_loops(const int n_loops, const Vec3 &origin, const Vec3 &lengths,
-                                  const unsigned image_order)
+inline SampleLines periodic_loops(const int n_loops, const Vec3 &origin, const Vec3 &lengths,
+                                  const unsigned image_order, const unsigned seed = 6)
 {
-  LinesOfTest t{"periodic",
+  SampleLines t{"periodic",
                 {},
                 {},
                 std::make_unique<PeriodicCell>(PeriodicCell{origin, lengths}),
                 std::make_unique<PeriodicImages>(origin, lengths, image_order)};
   t.network.set_period(lengths);
-  RandomVectors random(6);
+  RandomVectors random(seed);
   for (int k = 0; k < n_loops; ++k)
     add_loop(t.network, 0.5 * lengths.cwiseProduct(random.vector()), 65, 16, random);
   return t;
 }
 
 /// All networks without periodicity.
-inline std::vector<LinesOfTest> all_finite_systems(const int size)
+inline std::vector<SampleLines> all_finite_systems(const int size)
 {
-  std::vector<LinesOfTest> all;
+  std::vector<SampleLines> all;
   all.push_back(random_loops(size));
   all.push_back(clustered_loops(size));
   all.push_back(pillar(size * 2 / 3, size / 5));
   all.push_back(long_line_among_loops(size));
   return all;
 }
-} // namespace ddfem::test
+} // namespace ddfem::samples
