@@ -276,8 +276,18 @@ void Passes<Scalar>::add_far(const BasicTranslation<Scalar> &translation, const 
   for (; i + 1 < tasks.size(); i += 2)
     translation.add_two({multipole.of(tasks[i].source).fields, multipole.of(tasks[i + 1].source).fields},
                         {local.of(tasks[i].target).fields, local.of(tasks[i + 1].target).fields});
-  if (i < tasks.size())
+  if (i == tasks.size())
+    return add_far_q(translation, tasks);
+  if constexpr (std::is_same_v<Scalar, double>)
     translation.add(multipole.of(tasks[i].source).fields, local.of(tasks[i].target).fields);
+  else
+  {
+    // In the left half of wide rows, too: in narrow ones products may be contracted differently, and who has a neighbour depends on the rank.
+    alignas(row_size) Row unused[n_harmonics(max_order)];
+    std::fill(unused, unused + n_harmonics(translation.order()), Row{});
+    const auto source = multipole.of(tasks[i].source).fields;
+    translation.add_two({source, source}, {local.of(tasks[i].target).fields, unused});
+  }
   add_far_q(translation, tasks);
 }
 
