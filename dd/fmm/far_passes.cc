@@ -278,16 +278,16 @@ void Passes<Scalar>::add_far(const BasicTranslation<Scalar> &translation, const 
                         {local.of(tasks[i].target).fields, local.of(tasks[i + 1].target).fields});
   if (i == tasks.size())
     return add_far_q(translation, tasks);
-  const BoxExpansion<Scalar> source = multipole.of(tasks[i].source), target = local.of(tasks[i].target);
-  if constexpr (std::is_same_v<
-                    Scalar,
-                    float>) // as one of two: which ones are single depends on the wanted boxes, rounding may not
-  {
-    alignas(row_size) Row nowhere[n_harmonics(max_order)] = {};
-    translation.add_two({source.fields, source.fields}, {target.fields, nowhere});
-  }
+  if constexpr (std::is_same_v<Scalar, double>)
+    translation.add(multipole.of(tasks[i].source).fields, local.of(tasks[i].target).fields);
   else
-    translation.add(source.fields, target.fields);
+  {
+    // In the left half of wide rows, too: in narrow ones products may be contracted differently, and who has a neighbour depends on the rank.
+    alignas(row_size) Row unused[n_harmonics(max_order)];
+    std::fill(unused, unused + n_harmonics(translation.order()), Row{});
+    const auto source = multipole.of(tasks[i].source).fields;
+    translation.add_two({source, source}, {local.of(tasks[i].target).fields, unused});
+  }
   add_far_q(translation, tasks);
 }
 

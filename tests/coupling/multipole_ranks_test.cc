@@ -58,7 +58,7 @@ TEST(MultipoleRanks, MorePartsThanLeavesAreEmpty)
   const samples::SampleLines lines = samples::random_loops(1);
   const LineSystem system = lines.system();
   const std::vector<Vec3> points{Vec3(1, 2, 3)};
-  const auto value = MultipoleField(system, points, {1e-6}).stress(MPI_COMM_WORLD);
+  const auto value = MultipoleField(system, points, {1e-6}).stress(MPI_COMM_WORLD); // in double precision
   EXPECT_LT((value[0] - system.stress(points[0])).norm(), 1e-12 * value[0].norm());
 }
 } // namespace
