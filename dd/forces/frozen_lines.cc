@@ -305,7 +305,7 @@ bool FrozenLines::place_patch(const Patch &patch, const LineSystem &system, cons
   const Line &host = frozen[*found];
   const auto shift_of = [&](const StraightLine &l)
   {
-    const Vec3 shift = shift_towards(system.cell(), middle(l), middle(host.line));
+    Vec3 shift = shift_towards(system.cell(), middle(l), middle(host.line));
     placed.in_system_frame = placed.in_system_frame && shift.isZero(0);
     return shift;
   };
