@@ -1,6 +1,7 @@
 #include "samples/multipole_errors.h"
 
 #include "dd/elasticity/gauss.h"
+#include "samples/values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,21 +13,6 @@ namespace
 /// Of the pairs of lines that the direct sum integrates.
 constexpr double reference_tolerance = 1e-11;
 
-template <class Values> double rms(const Values &values)
-{
-  double sum = 0;
-  for (const auto &v : values)
-    sum += v.squaredNorm();
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-template <class Values> Values difference(Values a, const Values &b)
-{
-  for (std::size_t i = 0; i < a.size(); ++i)
-    a[i] -= b[i];
-  return a;
-}
-
 template <class Values> FieldError compare(const Values &values, const Values &exact, const Values &far)
 {
   const Values d = difference(values, exact);
@@ -34,19 +20,6 @@ template <class Values> FieldError compare(const Values &values, const Values &e
   for (const auto &v : d)
     e.largest = std::max(e.largest, v.norm());
   return e;
-}
-
-/// Points all over the bounding box of the lines.
-std::vector<Vec3> points_among(const LineSystem &system, const std::size_t n)
-{
-  Eigen::AlignedBox3d box;
-  for (const StraightLine &l : system.lines())
-    box.extend(0.5 * (l.start + l.end));
-  RandomVectors random(11);
-  std::vector<Vec3> points;
-  for (std::size_t k = 0; k < n; ++k)
-    points.emplace_back(box.center() + 0.5 * box.sizes().cwiseProduct(random.vector()));
-  return points;
 }
 } // namespace
 

@@ -128,4 +128,17 @@ inline std::vector<SampleLines> all_finite_systems(const int size)
   all.push_back(long_line_among_loops(size));
   return all;
 }
+
+/// Points all over the bounding box of the lines.
+inline std::vector<Vec3> points_among(const LineSystem &system, const std::size_t n)
+{
+  Eigen::AlignedBox3d box;
+  for (const StraightLine &l : system.lines())
+    box.extend(0.5 * (l.start + l.end));
+  RandomVectors random(11);
+  std::vector<Vec3> points;
+  for (std::size_t k = 0; k < n; ++k)
+    points.emplace_back(box.center() + 0.5 * box.sizes().cwiseProduct(random.vector()));
+  return points;
+}
 } // namespace ddfem::samples

@@ -1,6 +1,5 @@
 #include "dd/fmm/far_passes.h"
 
-#include "dd/fmm/accuracy.h"
 #include "dd/fmm/far_translations.h"
 
 #include <algorithm>
@@ -79,12 +78,6 @@ struct BoxBuffer
   explicit BoxBuffer(const int order) : fields(n_harmonics(order)), q(n_harmonics(order), 0.0) {}
   ExpansionView view() { return {fields.rows(), q.data()}; }
 };
-
-std::size_t octant_of(const Box &box)
-{
-  const int octant = (box.place[0] & 1) + 2 * (box.place[1] & 1) + 4 * (box.place[2] & 1);
-  return static_cast<std::size_t>(octant);
-}
 
 template <class Scalar> class Passes final : public FarPasses
 {
@@ -173,7 +166,7 @@ private:
     const Vec3 centre = tree.centre(box);
     for (std::size_t i = box.first_child; i < box.first_child + box.n_children; ++i)
       if (const Box &child = tree.boxes()[i]; child.n_lines() > 0)
-        translate_box(to_parent[octant_of(child)], centre - tree.centre(child), multipole.of(i), multipole.of(index));
+        translate_box(to_parent[child.octant()], centre - tree.centre(child), multipole.of(i), multipole.of(index));
   }
 
   /// Fields, and Q with its new reference point; @p shift (nm) from the old one.
@@ -186,21 +179,19 @@ private:
     std::fill(in, in + n, Row{});
     std::fill(out, out + n, Row{});
     t.add(source.fields, target.fields);
-    move_reference_point(n, shift, source, in, 0);
+    move_q(n, shift, source, in, 0);
     t.add(in, out);
     for (std::size_t k = 0; k < n; ++k)
       target.q[k] += out[k][0];
   }
 
-  /// Q of a box after a move of x0 by @p shift (nm), to a column of @p rows.
+  /// Q after a move of x0, to a column of @p rows.
   template <class AnyRow>
-  static void move_reference_point(const std::size_t n, const Vec3 &shift, const BoxExpansion<Scalar> &from,
-                                   AnyRow *const rows, const std::size_t column)
+  static void move_q(const std::size_t n, const Vec3 &shift, const BoxExpansion<Scalar> &from, AnyRow *const rows,
+                     const std::size_t column)
   {
-    const auto dx = static_cast<Scalar>(shift[0]), dy = static_cast<Scalar>(shift[1]),
-               dz = static_cast<Scalar>(shift[2]);
-    for (std::size_t k = 0; k < n; ++k)
-      rows[k][column] = from.q[k] - (dx * from.fields[k][0] + dy * from.fields[k][1] + dz * from.fields[k][2]);
+    move_reference_point<Scalar>(n, shift, from.fields, from.q,
+                                 [&](const std::size_t k, const Scalar q) { rows[k][column] = q; });
   }
 
   /// Of boxes [begin, end), in a fixed order.
@@ -251,7 +242,7 @@ private:
   {
     const Box &box = tree.boxes()[index];
     if (box.level > 0)
-      translate_box(to_child[octant_of(box)], tree.centre(box) - tree.centre(tree.boxes()[box.parent]),
+      translate_box(to_child[box.octant()], tree.centre(box) - tree.centre(tree.boxes()[box.parent]),
                     local.of(box.parent), local.of(index));
     if (box.level == distant_level)
     {
@@ -301,7 +292,7 @@ void Passes<Scalar>::add_far_q(const BasicTranslation<Scalar> &translation, cons
   std::fill(in, in + n, WideRow{});
   std::fill(out, out + n, WideRow{});
   for (std::size_t i = 0; i < tasks.size(); ++i)
-    move_reference_point(n, shift, multipole.of(tasks[i].source), in, i);
+    move_q(n, shift, multipole.of(tasks[i].source), in, i);
   translation.add_wide(in, out);
   for (std::size_t i = 0; i < tasks.size(); ++i)
   {
@@ -327,7 +318,7 @@ void Passes<double>::add_far_integrals(const HalfLineTranslation &translation, c
     for (std::size_t i = 0; i < pair.size(); ++i)
     {
       const BoxExpansion<double> source = multipole.of(pair[i].source);
-      move_reference_point(n_in, shift, source, in, 4 * i + 3);
+      move_q(n_in, shift, source, in, 4 * i + 3);
       for (std::size_t k = 0; k < n_in; ++k)
         for (std::size_t c = 0; c < 3; ++c)
           in[k][4 * i + c] = source.fields[k][c];

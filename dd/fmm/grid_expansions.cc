@@ -1,10 +1,10 @@
 #include "dd/fmm/grid_expansions.h"
 
 #include "dd/elasticity/gauss.h"
+#include "dd/fmm/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -16,26 +16,6 @@ namespace
 {
 /// How far from the centre a line may reach, in box edges: a quarter out of the box, more where boxes are no cubes.
 constexpr double farthest_reach = 0.8;
-
-/// Adds the processor time of a scope to a phase.
-class Stopwatch
-{
-public:
-  explicit Stopwatch(double &phase_) : phase(phase_) {}
-  Stopwatch(const Stopwatch &) = delete;
-  Stopwatch &operator=(const Stopwatch &) = delete;
-  ~Stopwatch() { phase += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC; }
-
-private:
-  double &phase;
-  std::clock_t start = std::clock();
-};
-
-std::size_t octant_of(const Box &box)
-{
-  const int octant = (box.place[0] & 1) + 2 * (box.place[1] & 1) + 4 * (box.place[2] & 1);
-  return static_cast<std::size_t>(octant);
-}
 
 /// Gauss points for a line of @p length whose middle is @p distance or more from all points: the error of a rule falls like
 /// rho^-2n, rho = d/h + sqrt(1 + (d/h)^2) with half the length h (Trefethen, SIAM Rev. 50 (2008) 67, eq. 4.15).
@@ -123,7 +103,7 @@ void GridExpansions::add_up(const std::size_t level)
     add_lines(i);
     for (std::size_t child = box.first_child; child < box.first_child + box.n_children; ++child)
       if (tree.boxes()[child].n_lines() > 0)
-        grid.add_to_parent(octant_of(tree.boxes()[child]), density.rows() + child * grid.n_rows(),
+        grid.add_to_parent(tree.boxes()[child].octant(), density.rows() + child * grid.n_rows(),
                            density.rows() + i * grid.n_rows());
   }
 }
@@ -226,7 +206,7 @@ void GridExpansions::add_down(const std::size_t level)
 #pragma omp parallel for schedule(dynamic, 8)
   for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
     if (const Box &box = tree.boxes()[i]; box.n_points() > 0)
-      grid.add_to_child(octant_of(box), stress.rows() + box.parent * grid.n_rows(), stress.rows() + i * grid.n_rows());
+      grid.add_to_child(box.octant(), stress.rows() + box.parent * grid.n_rows(), stress.rows() + i * grid.n_rows());
 }
 
 void GridExpansions::add_stress(const std::size_t leaf, const StressBatch &points) const

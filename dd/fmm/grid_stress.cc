@@ -2,8 +2,7 @@
 
 #include "dd/elasticity/line_table.h"
 #include "dd/elasticity/vectorised/stress_kernels.h"
-
-#include <algorithm>
+#include "dd/fmm/shifted_batch.h"
 
 namespace ddfem::fmm
 {
@@ -22,16 +21,8 @@ void add_near(const IsotropicMedium &medium, const Octree &tree, const LineTable
                           });
   const StressBatch batch = buffer.batch();
   for (std::size_t image = 0; image < near.size(); ++image)
-  {
-    if (near[image].empty())
-      continue;
-    StressBuffer moved(batch.n);
-    StressBatch shifted = moved.batch();
-    for (std::size_t i = 0; i < batch.n; ++i)
-      moved.set_point(i, Vec3(Vec3(batch.x[0][i], batch.x[1][i], batch.x[2][i]) - tree.image_shifts()[image]));
-    std::copy(std::begin(batch.value), std::end(batch.value), std::begin(shifted.value));
-    add_segment_stress(medium, lines, near[image], shifted);
-  }
+    if (!near[image].empty())
+      add_segment_stress(medium, lines, near[image], ShiftedBatch(batch, -tree.image_shifts()[image]).batch);
 }
 } // namespace
 

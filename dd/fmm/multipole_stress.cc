@@ -3,6 +3,7 @@
 #include "dd/elasticity/vectorised/stress_kernels.h"
 #include "dd/fmm/accuracy.h"
 #include "dd/fmm/grids_and_rays.h"
+#include "dd/fmm/shifted_batch.h"
 
 #include <algorithm>
 #include <limits>
@@ -11,23 +12,6 @@ namespace ddfem::fmm
 {
 namespace
 {
-/// A batch at points moved by @p shift (nm).
-struct ShiftedBatch
-{
-  std::array<std::vector<double>, 3> x;
-  StressBatch batch;
-
-  ShiftedBatch(const StressBatch &given, const Vec3 &shift) : batch(given)
-  {
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      for (std::size_t i = 0; i < given.n; ++i)
-        x[c].push_back(given.x[c][i] + shift[static_cast<int>(c)]);
-      batch.x[c] = x[c].data();
-    }
-  }
-};
-
 /// Lines nearer than this to the points of a leaf, in box sizes, are summed in double precision in any case.
 constexpr double single_precision_distance = 0.12;
 
@@ -170,7 +154,7 @@ std::vector<SymTensor> MultipoleStress::stress_with_kept_far_field(MPI_Comm comm
 
 std::vector<SymTensor> MultipoleStress::stress_with_new_far_field(MPI_Comm comm)
 {
-  compute_again(comm, Part::all);
+  compute_again(comm);
   return in_given_order<SymTensor>();
 }
 

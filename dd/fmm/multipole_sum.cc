@@ -1,30 +1,15 @@
 #include "dd/fmm/multipole_sum.h"
 
 #include "dd/fmm/accuracy.h"
+#include "dd/fmm/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <limits>
 
 namespace ddfem::fmm
 {
 namespace
 {
-/// Adds the processor time of a scope to a phase.
-class Stopwatch
-{
-public:
-  explicit Stopwatch(double &phase_) : phase(phase_) {}
-  Stopwatch(const Stopwatch &) = delete;
-  Stopwatch &operator=(const Stopwatch &) = delete;
-  ~Stopwatch() { phase += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC; }
-
-private:
-  double &phase;
-  std::clock_t start = std::clock();
-};
-
 TreeSettings tree_settings(const MultipoleSettings &settings, const int order, const double smallest_box,
                            const int n_antiderivatives)
 {
@@ -82,6 +67,7 @@ void MultipoleSum::place_points(const std::span<const Vec3> points)
   for (std::size_t c = 0; c < 3; ++c)
   {
     x[c].clear();
+    x[c].reserve(points.size());
     for (const std::uint32_t i : tree.point_order())
       x[c].push_back(points[i][static_cast<int>(c)]);
   }
@@ -177,11 +163,11 @@ void MultipoleSum::compute(MPI_Comm comm, const Part part)
   evaluate(comm, {.part = part});
 }
 
-void MultipoleSum::compute_again(MPI_Comm comm, const Part part)
+void MultipoleSum::compute_again(MPI_Comm comm)
 {
   passes->swap_local();
   far_passes();
-  evaluate(comm, {.part = part});
+  evaluate(comm, {});
 }
 
 void MultipoleSum::compute_earlier()

@@ -84,7 +84,7 @@ protected:
   void move(std::span<const SourceExtent> sources, std::span<const std::uint32_t> box_of_source,
             std::span<const Vec3> points, std::span<const std::uint32_t> leaf_of_point);
   /// As compute() after move(), with the shares of the last time, whose local expansions become the earlier ones.
-  void compute_again(MPI_Comm comm, Part part);
+  void compute_again(MPI_Comm comm);
   /// Makes the earlier local expansions those of the moments as they are now.
   void compute_earlier();
   /// Evaluates the local expansions of the last compute() and what acts directly. Collective, with the shares of that time.

@@ -43,6 +43,12 @@ struct Box
   std::size_t n_lines() const { return lines_end - lines_begin; }
   std::size_t n_points() const { return points_end - points_begin; }
   bool is_leaf() const { return n_children == 0; }
+  /// Which child of its parent this is: bits of x, y and z.
+  std::size_t octant() const
+  {
+    const int bits = (place[0] & 1) + 2 * (place[1] & 1) + 4 * (place[2] & 1);
+    return static_cast<std::size_t>(bits);
+  }
 };
 
 /// Lines of `box`, shifted by image number `image`, that act directly on the points of the box that has the link.

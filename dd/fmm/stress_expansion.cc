@@ -136,12 +136,6 @@ void add_local_of_rays(const int order, const Vec3 &centre, const double size, c
   }
 }
 
-void move_reference_point(const std::size_t n, const Vec3 &shift, const Row *fields, const double *q, double *moved_q)
-{
-  for (std::size_t k = 0; k < n; ++k)
-    moved_q[k] = q[k] - (shift[0] * fields[k][0] + shift[1] * fields[k][1] + shift[2] * fields[k][2]);
-}
-
 LocalStress::LocalStress(const IsotropicMedium &medium, const int order, const Vec3 &centre_, const double size_,
                          const Row *fields, const double *q)
     : LocalExpansion(std::max(order - 1, 0), centre_, size_)

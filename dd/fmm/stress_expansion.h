@@ -51,8 +51,15 @@ void add_moments(int order, double tolerance, const Vec3 &centre, double size, s
 void add_local_of_rays(int order, const Vec3 &centre, double size, std::span<const RaySource> rays,
                        const ExpansionView &local);
 
-/// Q of a box after a move of x0 by @p shift (nm): @p n coefficients.
-void move_reference_point(std::size_t n, const Vec3 &shift, const Row *fields, const double *q, double *moved_q);
+/// Calls set(k, Q_k) for @p n coefficients Q_k of a box after a move of x0 by @p shift (nm).
+template <class Scalar, class Set>
+void move_reference_point(const std::size_t n, const Vec3 &shift, const typename Precision<Scalar>::Narrow::Row *fields,
+                          const Scalar *q, Set &&set)
+{
+  const auto dx = static_cast<Scalar>(shift[0]), dy = static_cast<Scalar>(shift[1]), dz = static_cast<Scalar>(shift[2]);
+  for (std::size_t k = 0; k < n; ++k)
+    set(k, q[k] - (dx * fields[k][0] + dy * fields[k][1] + dz * fields[k][2]));
+}
 
 /// The stress (MPa) in one box from its local coefficients, prepared for evaluation at many points.
 class LocalStress : public LocalExpansion<6>

@@ -33,15 +33,6 @@ FarFieldCache::Field fresh(const FieldRequest &r, const fmm::Part part)
   return {std::move(field), std::move(stress)};
 }
 
-std::vector<fmm::LineSource> sources_of(const LineSystem &system)
-{
-  std::vector<fmm::LineSource> sources;
-  sources.reserve(system.lines().size());
-  for (const StraightLine &l : system.lines())
-    sources.push_back({l.start, l.end, l.burgers});
-  return sources;
-}
-
 /// Finds the leaf of a point. @p x: moved to the image that is near one, where it has left the cell. Returns whether it is.
 bool place_point(const fmm::Octree &tree, Vec3 &x, std::uint32_t &leaf)
 {
@@ -185,7 +176,7 @@ FarFieldCache::Field FarFieldCache::refresh_in_new_tree(const FieldRequest &requ
   Field result = fresh(request, fmm::Part::all);
   if (!request.system.rays().empty() || settings.mode == FarFieldRefresh::every_evaluation)
     return result;
-  const std::vector<fmm::LineSource> lines = sources_of(request.system);
+  const std::vector<fmm::LineSource> lines = line_sources(request.system);
   kept = std::make_unique<Kept>(Kept{result.field,
                                      {request.network, lines, result.field->sum().octree().boxes_of_lines(),
                                       before ? &before->lines : nullptr, request.system.cell()},

@@ -9,7 +9,6 @@ namespace ddfem
 {
 namespace
 {
-using fmm::LineSource;
 using fmm::RaySource;
 
 /// Shortest piece into which rays are cut: about the size of the segments.
@@ -22,13 +21,20 @@ double mean_length(const std::vector<StraightLine> &lines)
 }
 } // namespace
 
+std::vector<fmm::LineSource> line_sources(const LineSystem &system)
+{
+  std::vector<fmm::LineSource> sources;
+  sources.reserve(system.lines().size());
+  for (const StraightLine &l : system.lines())
+    sources.push_back({l.start, l.end, l.burgers});
+  return sources;
+}
+
 MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const Vec3> points_,
                                const fmm::MultipoleSettings &settings)
     : system(&system_)
 {
-  std::vector<LineSource> lines;
-  for (const StraightLine &l : system->lines())
-    lines.push_back({l.start, l.end, l.burgers});
+  std::vector<fmm::LineSource> lines = line_sources(*system);
   std::vector<RaySource> rays;
   for (const VirtualRay &r : system->rays())
     rays.push_back({r.origin, r.direction, r.burgers});

@@ -44,6 +44,9 @@ struct SummationSettings
   }
 };
 
+/// The lines of @p system as sources, in their order.
+std::vector<fmm::LineSource> line_sources(const LineSystem &system);
+
 /// The sources of @p system and a tree that has them and @p points.
 class MultipoleField
 {

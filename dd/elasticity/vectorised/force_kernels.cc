@@ -232,9 +232,11 @@ SegmentForces forces_from(const IsotropicMedium &medium, const internal::LaneSum
   return {(total - moment).cross(target.t), moment.cross(target.t)};
 }
 
-SegmentForces force_of_lines(const LineKernels &kernels, const IsotropicMedium &medium, const LineTable &lines,
-                             const Vec3 &x3, const Vec3 &x4, const Vec3 &b34, const double tolerance,
-                             const std::size_t without)
+/// Sum over portions of lines: plan(target, block, n_blocks, n_points) says how many points each line gets on a single panel, add_rest(target,
+/// i, n_points, sums) adds what line number i does besides.
+template <class Plan, class AddRest>
+SegmentForces sum_portions(const LineKernels &kernels, const IsotropicMedium &medium, const LineTable &lines,
+                           const Vec3 &x3, const Vec3 &x4, const Vec3 &b34, Plan &&plan, AddRest &&add_rest)
 {
   const double length = (x4 - x3).norm();
   if (length == 0.0)
@@ -246,17 +248,34 @@ SegmentForces force_of_lines(const LineKernels &kernels, const IsotropicMedium &
   {
     const std::size_t n_blocks = std::min(internal::chunk_of_blocks, lines.n_blocks() - block);
     const std::size_t first = block * LineTable::block_size, end = first + n_blocks * LineTable::block_size;
-    kernels.plan(lines, block, n_blocks, target, medium.a, tolerance, n_points.data());
+    plan(target, block, n_blocks, n_points.data());
     for (std::size_t i = lines.size(); i < end; ++i)
       n_points[i - first] = -1.0; // nothing there
-    if (without >= first && without < end)
-      n_points[without - first] = -1.0;
     kernels.add_lanes(medium, lines, block, n_blocks, target, n_points.data(), sums);
     for (std::size_t i = first; i < end; ++i)
-      if (n_points[i - first] == 0.0)
-        add_near_line(kernels, medium, lines, i, target, tolerance, sums);
+      add_rest(target, i, n_points[i - first], sums);
   }
   return forces_from(medium, sums, target);
+}
+
+SegmentForces force_of_lines(const LineKernels &kernels, const IsotropicMedium &medium, const LineTable &lines,
+                             const Vec3 &x3, const Vec3 &x4, const Vec3 &b34, const double tolerance,
+                             const std::size_t without)
+{
+  return sum_portions(
+      kernels, medium, lines, x3, x4, b34,
+      [&](const internal::ForceTarget &target, const std::size_t block, const std::size_t n_blocks, double *n_points)
+      {
+        kernels.plan(lines, block, n_blocks, target, medium.a, tolerance, n_points);
+        const std::size_t first = block * LineTable::block_size;
+        if (without >= first && without < first + n_blocks * LineTable::block_size)
+          n_points[without - first] = -1.0;
+      },
+      [&](const internal::ForceTarget &target, const std::size_t i, const double n_points, internal::LaneSums &sums)
+      {
+        if (n_points == 0.0)
+          add_near_line(kernels, medium, lines, i, target, tolerance, sums);
+      });
 }
 } // namespace
 
@@ -269,21 +288,11 @@ SegmentForces force_of_segments(const IsotropicMedium &medium, const LineTable &
 SegmentForces force_of_segments_by_rule(const IsotropicMedium &medium, const LineTable &segments, const Vec3 &x3,
                                         const Vec3 &x4, const Vec3 &b34, const int n_gauss)
 {
-  const double length = (x4 - x3).norm();
-  if (length == 0.0)
-    return {};
-  const internal::ForceTarget target{x3, x4, (x4 - x3) / length, b34, length};
-  internal::LaneSums sums;
-  std::array<double, internal::chunk_of_lines> n_points;
-  for (std::size_t block = 0; block < segments.n_blocks(); block += internal::chunk_of_blocks)
-  {
-    const std::size_t n_blocks = std::min(internal::chunk_of_blocks, segments.n_blocks() - block);
-    n_points.fill(n_gauss);
-    for (std::size_t i = segments.size(); i < (block + n_blocks) * LineTable::block_size; ++i)
-      n_points[i - block * LineTable::block_size] = -1.0; // nothing there
-    segment_kernels().add_lanes(medium, segments, block, n_blocks, target, n_points.data(), sums);
-  }
-  return forces_from(medium, sums, target);
+  return sum_portions(
+      segment_kernels(), medium, segments, x3, x4, b34,
+      [&](const internal::ForceTarget &, std::size_t, const std::size_t n_blocks, double *n_points)
+      { std::fill(n_points, n_points + n_blocks * LineTable::block_size, n_gauss); },
+      [](const internal::ForceTarget &, std::size_t, double, internal::LaneSums &) {});
 }
 
 SegmentForces force_of_rays(const IsotropicMedium &medium, const LineTable &rays, const Vec3 &x3, const Vec3 &x4,

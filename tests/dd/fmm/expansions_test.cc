@@ -33,11 +33,9 @@ struct Coefficients
     Coefficients result(order);
     const Translation t(kind, order, vector);
     t.add(fields.rows(), result.fields.rows());
-    std::vector<double> moved(q.size());
-    move_reference_point(q.size(), reference_sign * size * vector, fields.rows(), q.data(), moved.data());
     RowBuffer in(q.size()), out(q.size());
-    for (std::size_t k = 0; k < q.size(); ++k)
-      in(k, 0) = moved[k];
+    move_reference_point<double>(q.size(), reference_sign * size * vector, fields.rows(), q.data(),
+                                 [&](const std::size_t k, const double moved) { in(k, 0) = moved; });
     t.add(in.rows(), out.rows());
     for (std::size_t k = 0; k < q.size(); ++k)
       result.q[k] = out(k, 0);

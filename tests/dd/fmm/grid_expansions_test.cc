@@ -4,6 +4,7 @@
 #include "dd/fmm/grid_stress.h"
 #include "dd/forces/multipole_field.h"
 #include "samples/systems_of_lines.h"
+#include "samples/values.h"
 #include "tests/dd/elasticity/elasticity_test_helpers.h"
 
 #include <gtest/gtest.h>
@@ -22,19 +23,9 @@ namespace
 using namespace samples;
 using namespace test;
 
-double rms(const std::vector<SymTensor> &values)
+double rms_difference(const std::vector<SymTensor> &a, const std::vector<SymTensor> &b)
 {
-  double sum = 0;
-  for (const SymTensor &v : values)
-    sum += v.squaredNorm();
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-double rms_difference(std::vector<SymTensor> a, const std::vector<SymTensor> &b)
-{
-  for (std::size_t i = 0; i < a.size(); ++i)
-    a[i] -= b[i];
-  return rms(a);
+  return rms(difference(a, b));
 }
 
 TEST(GridKernel, StressOfDensityIsThatOfASegment)
@@ -128,18 +119,6 @@ public:
   std::vector<Vec3> points;
 
 private:
-  static std::vector<Vec3> points_among(const LineSystem &system, const std::size_t n)
-  {
-    Eigen::AlignedBox3d box;
-    for (const StraightLine &l : system.lines())
-      box.extend(0.5 * (l.start + l.end));
-    RandomVectors random(11);
-    std::vector<Vec3> points;
-    for (std::size_t k = 0; k < n; ++k)
-      points.emplace_back(box.center() + 0.5 * box.sizes().cwiseProduct(random.vector()));
-    return points;
-  }
-
   MultipoleField field;
 };
 

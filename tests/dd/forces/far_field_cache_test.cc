@@ -3,6 +3,7 @@
 #include "dd/forces/far_field_cache.h"
 #include "dd/forces/nodal_forces.h"
 #include "samples/systems_of_lines.h"
+#include "samples/values.h"
 #include "tests/dd/topology/dislocation_driver.h"
 #include "tests/dd/topology/random_networks.h"
 
@@ -159,8 +160,9 @@ TEST_P(FarFieldCacheIn, ExtrapolatesAlongTheMotionOfTheLines)
 {
   SampleLines lines = straight_lines(GetParam());
   FarFieldCache cache({FarFieldRefresh::adaptive});
+  const unsigned n_steps = sanitized ? 9 : 40;
   double largest = 0;
-  for (int step = 0; step < 40; ++step)
+  for (unsigned step = 0; step < n_steps; ++step)
   {
     cache.begin_step();
     const std::vector<Vec3> value = forces(lines, &cache);
@@ -170,14 +172,14 @@ TEST_P(FarFieldCacheIn, ExtrapolatesAlongTheMotionOfTheLines)
   }
   EXPECT_LT(largest, tolerance);
   EXPECT_LT(cache.counts().refreshed, 15U);
-  EXPECT_EQ(cache.counts().refreshed + cache.counts().kept, 40U);
+  EXPECT_EQ(cache.counts().refreshed + cache.counts().kept, n_steps);
 }
 
 TEST_P(FarFieldCacheIn, IsNotChangedByEvaluationsWithinAStep)
 {
   SampleLines lines = straight_lines(GetParam());
   FarFieldCache cache({FarFieldRefresh::adaptive}), undisturbed({FarFieldRefresh::adaptive});
-  for (int step = 0; step < 6; ++step)
+  for (int step = 0; step < (sanitized ? 3 : 6); ++step)
   {
     cache.begin_step();
     undisturbed.begin_step();
@@ -255,7 +257,7 @@ TEST(FarFieldCache, KeepsTheToleranceInARunWithChangesOfTopology)
     return ends_of(driver.forces(driver.network));
   };
   double largest = 0;
-  for (int step = 0; step < 24; ++step)
+  for (int step = 0; step < (sanitized ? 3 : 24); ++step)
   {
     driver.far_field = &cache;
     driver.step(1e9);
@@ -265,6 +267,8 @@ TEST(FarFieldCache, KeepsTheToleranceInARunWithChangesOfTopology)
     largest = std::max(largest, distance(kept, exact) / distance(forces_with(&none), exact));
   }
   EXPECT_LT(largest, tolerance);
+  if (sanitized) // too few steps for what follows
+    return;
   EXPECT_GT(cache.counts().kept, cache.counts().refreshed + cache.counts().without);
   EXPECT_GT(driver.counts.collisions + driver.counts.coarsenings, 10U);
 }
