@@ -105,7 +105,7 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
     centres.push_back(centre(box));
     had_points.push_back(box.n_points() > 0 ? 1 : 0);
   }
-  drift.assign(level_begin.size(), 0.0);
+  measure_overhang();
 }
 
 void Octree::place_spheres()
@@ -119,6 +119,20 @@ void Octree::place_spheres()
     spheres.y.push_back(line_middle[i][1]);
     spheres.z.push_back(line_middle[i][2]);
     spheres.radius.push_back(0.5 * line_length[i]);
+  }
+}
+
+void Octree::measure_overhang()
+{
+  overhang.assign(all.size(), 0.0);
+  for (std::size_t i = all.size(); i-- > 0;)
+  {
+    const Box &box = all[i];
+    for (std::size_t k = box.lines_begin; k < box.own_lines_end; ++k)
+      overhang[i] = std::max(overhang[i],
+                             distance_outside(i, Vec3(spheres.x[k], spheres.y[k], spheres.z[k])) + spheres.radius[k]);
+    if (box.level > 0)
+      overhang[box.parent] = std::max(overhang[box.parent], overhang[i]);
   }
 }
 
@@ -141,7 +155,6 @@ void Octree::sort_into_roots(const std::span<const SourceExtent> sources, const 
   {
     line_middle.push_back(s.middle);
     line_length.push_back(s.length);
-    longest_of_all = std::max(longest_of_all, line_length.back());
   }
   point.assign(points.begin(), points.end());
   line_at.resize(sources.size());

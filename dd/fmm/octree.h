@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -155,7 +156,7 @@ private:
   void place_spheres();
   void number_contents(std::size_t box, std::span<const std::uint32_t> own_lines,
                        std::span<const std::uint32_t> own_points, std::uint32_t &next_line, std::uint32_t &next_point);
-  void measure_drift(std::span<const std::uint32_t> box_of_line);
+  void measure_overhang();
 
   RootGrid grid;
   TreeSettings settings;
@@ -170,9 +171,8 @@ private:
   std::vector<Vec3> shifts;
   LineSpheres spheres;
   std::vector<Vec3> centres;            ///< of the boxes, nm
-  double longest_of_all = 0;            ///< line, nm
+  std::vector<double> overhang;         ///< how far the lines of a box and of its children reach out of it, nm
   std::vector<std::uint8_t> had_points; ///< when the tree was made
-  std::vector<double> drift; ///< by level: how much farther lines of its boxes and their children reach than then, nm
 };
 
 template <class Visit> void Octree::for_each_near_link(const std::size_t leaf, Visit &&visit) const
@@ -200,10 +200,9 @@ template <class Visit>
 void Octree::visit_lines(const Box &box, const Vec3 &x, const double radius, const std::size_t image,
                          Visit &visit) const
 {
-  // Lines that leaves of level 0 hold may be of any length.
-  const double overhang = (box.level == 0 ? longest_of_all : settings.longest_line * size(box)) + 2 * drift[box.level];
-  const Vec3 &centre_of_box = centres[static_cast<std::size_t>(&box - all.data())], &whole = edges(box);
-  const double reach = radius + 0.5 * overhang;
+  const auto index = static_cast<std::size_t>(&box - all.data());
+  const Vec3 &centre_of_box = centres[index], &whole = edges(box);
+  const double reach = radius + overhang[index];
   double outside2 = 0;
   for (Eigen::Index c = 0; c < 3; ++c)
   {
@@ -212,15 +211,22 @@ void Octree::visit_lines(const Box &box, const Vec3 &x, const double radius, con
   }
   if (box.n_lines() == 0 || outside2 > reach * reach)
     return;
-  constexpr std::uint32_t at_once = 64;
+  constexpr std::uint32_t at_once = 64, eight = 8;
   std::uint8_t near_line[at_once];
   for (std::uint32_t begin = box.lines_begin; begin < box.own_lines_end; begin += at_once)
   {
     const std::uint32_t n = std::min(at_once, box.own_lines_end - begin);
     spheres.find(x, radius, begin, n, near_line);
-    for (std::uint32_t i = 0; i < n; ++i)
-      if (near_line[i] != 0)
-        visit(begin + i, image);
+    std::fill(near_line + n, near_line + (n + eight - 1) / eight * eight, std::uint8_t{0});
+    for (std::uint32_t i = 0; i < n; i += eight) // few are near: most eights hold none
+    {
+      std::uint64_t flags = 0;
+      std::memcpy(&flags, near_line + i, eight);
+      if (flags != 0)
+        for (std::uint32_t k = i; k < i + eight; ++k)
+          if (near_line[k] != 0)
+            visit(begin + k, image);
+    }
   }
   for (std::uint32_t i = 0; i < box.n_children; ++i)
     visit_lines(all[box.first_child + i], x, radius, image, visit);

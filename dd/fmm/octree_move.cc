@@ -32,12 +32,10 @@ void Octree::move(const std::span<const SourceExtent> sources, const std::span<c
 {
   line_middle.clear();
   line_length.clear();
-  longest_of_all = 0;
   for (const SourceExtent &s : sources)
   {
     line_middle.push_back(s.middle);
     line_length.push_back(s.length);
-    longest_of_all = std::max(longest_of_all, s.length);
   }
   point.assign(points.begin(), points.end());
   const auto own_lines = count(box_of_line, all.size()), own_points = count(leaf_of_point, all.size());
@@ -53,7 +51,7 @@ void Octree::move(const std::span<const SourceExtent> sources, const std::span<c
   line_at = order_of(box_of_line, std::move(first_line));
   point_at = order_of(leaf_of_point, std::move(first_point));
   place_spheres();
-  measure_drift(box_of_line);
+  measure_overhang();
 }
 
 /// In the order of division: what a box holds itself, then its children.
@@ -70,20 +68,6 @@ void Octree::number_contents(const std::size_t index, const std::span<const std:
     number_contents(i, own_lines, own_points, next_line, next_point);
   box.lines_end = next_line;
   box.points_end = next_point;
-}
-
-void Octree::measure_drift(const std::span<const std::uint32_t> box_of_line)
-{
-  std::fill(drift.begin(), drift.end(), 0.0);
-  for (std::size_t i = 0; i < box_of_line.size(); ++i)
-  {
-    const Box &box = all[box_of_line[i]];
-    const double longest = box.level == 0 ? longest_of_all : settings.longest_line * size(box);
-    const double reach = distance_outside(box_of_line[i], line_middle[i]) + 0.5 * (line_length[i] - longest);
-    drift[box.level] = std::max(drift[box.level], reach);
-  }
-  for (std::size_t level = drift.size() - 1; level-- > 0;)
-    drift[level] = std::max(drift[level], drift[level + 1]);
 }
 
 std::vector<std::uint32_t> Octree::boxes_of_lines() const
