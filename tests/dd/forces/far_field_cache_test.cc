@@ -30,7 +30,7 @@ SampleLines straight_lines(const bool periodic)
   const Vec3 origin = Vec3::Constant(-500), lengths = Vec3::Constant(1000);
   SampleLines t = periodic ? periodic_loops(0, origin, lengths, 7) : random_loops(0);
   RandomVectors random(8);
-  for (int k = 0; k < 140; ++k)
+  for (int k = 0; k < (sanitized ? 80 : 140); ++k)
   {
     const Vec3 middle = 500 * random.vector(), half = 300 * random.vector().normalized();
     add_line(t.network, middle - half, middle + half, 24, NodeConstraint::pinned, 0.25 * random.vector().normalized());
