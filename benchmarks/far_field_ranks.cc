@@ -1,12 +1,11 @@
 // Nodal forces by the fast multipole method on several ranks: time of the phases and bytes sent by each rank.
 //
-//   mpirun -np RANKS far_field_ranks TOLERANCE PAIR_TOLERANCE REPEATS random|clustered N_SEGMENTS...
+//   mpirun -np RANKS far_field_ranks TOLERANCE PAIR_TOLERANCE REPEATS random|clustered measured|assumed N_SEGMENTS...
 //
-// Medians over the repeats, after one that is not counted; with it, the shares of the ranks follow measured costs. Processor times are
-// those of the threads of a rank, but for those of what one thread does alone ("tree"), without waiting for other ranks.
+// Medians over the repeats, after one that is not counted. The shares of the ranks follow measured or assumed costs. Wall time of the
+// forces; all others are processor times, summed over the threads of a rank.
 #include "benchmarks/networks.h"
 #include "dd/common/parallel.h"
-#include "dd/common/thread_seconds.h"
 #include "dd/forces/multipole_forces.h"
 #include "dd/forces/nodal_forces.h"
 
@@ -14,6 +13,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -35,19 +35,27 @@ enum Column : std::uint8_t
   near,
   close,
   divided, ///< sum of what the ranks divide
-  waiting, ///< for stresses of others, wall time
-  stresses,
+  waiting, ///< for others
+  moments_sent,
+  stresses_sent,
   n_columns
 };
 using Row = std::array<double, n_columns>;
 
-/// Phases of one evaluation. Times in s, stresses sent.
+/// Processor time of all threads, s.
+double seconds()
+{
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// Phases of one evaluation. Times in s, what is sent in bytes.
 Row phases(const Network &network, const fmm::MultipoleSettings &settings, const double pair_tolerance)
 {
   Row row{};
-  const double start = thread_seconds();
+  MPI_Barrier(MPI_COMM_WORLD);
+  const double start = seconds();
   const LineSystem system(medium, network, nullptr, RayDirection::normal, nullptr, nullptr);
-  row[system_] = thread_seconds() - start;
+  row[system_] = seconds() - start;
   const MultipoleForces forces(system, settings, pair_tolerance, MPI_COMM_WORLD);
   const fmm::PhaseTimes &t = forces.field().sum().times();
   row[upward] = t.upward;
@@ -55,10 +63,11 @@ Row phases(const Network &network, const fmm::MultipoleSettings &settings, const
   row[points] = t.points;
   row[near] = t.near;
   row[close] = forces.spent().close_pairs;
-  row[divided] = row[translations] + row[points] + row[near] + row[close];
-  row[waiting] = forces.spent().waiting;
-  row[stresses] = static_cast<double>(forces.spent().n_stresses_sent);
-  row[tree] = thread_seconds() - start - row[system_] - row[upward] - row[divided] - row[waiting];
+  row[divided] = row[upward] + row[translations] + row[points] + row[near] + row[close];
+  row[waiting] = t.waiting + forces.spent().waiting;
+  row[moments_sent] = static_cast<double>(forces.field().sum().n_bytes_sent());
+  row[stresses_sent] = static_cast<double>(forces.spent().n_stresses_sent * sizeof(SymTensor));
+  row[tree] = seconds() - start - row[system_] - row[divided] - row[waiting];
   return row;
 }
 
@@ -81,12 +90,14 @@ Row medians(std::vector<Row> rows)
   return result;
 }
 
-void measure(const Network &network, const double tolerance, const double pair_tolerance, const int n_repeats)
+void measure(const Network &network, const double tolerance, const double pair_tolerance, const bool with_costs,
+             const int n_repeats)
 {
   ForceSettings settings{medium, medium.a, pair_tolerance};
   settings.summation = {SummationMethod::multipole, tolerance};
   ForceEnvironment environment;
-  environment.costs = std::make_shared<fmm::WorkCosts>();
+  if (with_costs)
+    environment.costs = std::make_shared<fmm::WorkCosts>();
   fmm::MultipoleSettings multipoles{tolerance};
   multipoles.costs = environment.costs;
   std::vector<Row> rows;
@@ -104,14 +115,14 @@ void measure(const Network &network, const double tolerance, const double pair_t
   const auto n = static_cast<double>(network.n_segments());
   std::printf(
       "%zu segments, tolerance %g\nrank   forces   system     tree   upward translat   points     near    close "
-      " divided  waiting  stresses sent, bytes  end forces sent, bytes\n",
+      " divided  waiting  moments, stresses, end forces sent, bytes\n",
       network.n_segments(), tolerance);
   for (std::size_t r = 0; r < all.size(); ++r)
   {
     std::printf("%4zu", r);
-    for (std::size_t c = 0; c < stresses; ++c)
+    for (std::size_t c = 0; c < moments_sent; ++c)
       std::printf(" %8.4f", all[r][c]);
-    std::printf(" %21.0f %23.0f\n", all[r][stresses] * sizeof(SymTensor),
+    std::printf(" %10.0f %8.0f %8.0f\n", all[r][moments_sent], all[r][stresses_sent],
                 n / static_cast<double>(all.size()) * sizeof(SegmentForces));
   }
   std::fflush(stdout);
@@ -121,11 +132,13 @@ void measure(const Network &network, const double tolerance, const double pair_t
 int main(int argc, char **argv)
 {
   MPI_Init(&argc, &argv);
-  if (argc < 6)
-    std::fprintf(stderr, "usage: %s TOLERANCE PAIR_TOLERANCE REPEATS random|clustered N_SEGMENTS...\n", argv[0]);
-  for (int k = 5; k < argc; ++k)
+  if (argc < 7)
+    std::fprintf(stderr, "usage: %s TOLERANCE PAIR_TOLERANCE REPEATS random|clustered measured|assumed N_SEGMENTS...\n",
+                 argv[0]);
+  for (int k = 6; k < argc; ++k)
     measure(random_loops(std::strtoul(argv[k], nullptr, 10), std::string_view(argv[4]) == "clustered"),
-            std::atof(argv[1]), std::atof(argv[2]), std::max(1, std::atoi(argv[3])));
+            std::atof(argv[1]), std::atof(argv[2]), std::string_view(argv[5]) == "measured",
+            std::max(1, std::atoi(argv[3])));
   MPI_Finalize();
-  return argc < 6 ? 2 : 0;
+  return argc < 7 ? 2 : 0;
 }

@@ -5,7 +5,7 @@
 
 namespace ddfem
 {
-/// That the calling thread has used, s. Takes a fifth of a microsecond.
+/// That the calling thread has used, s. Takes half a microsecond.
 inline double thread_seconds()
 {
   timespec now{};

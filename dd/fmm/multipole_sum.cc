@@ -118,7 +118,9 @@ void MultipoleSum::choose_share(MPI_Comm comm)
   std::vector<double> until(leaves.size() + 1, 0.0);
   if (rank.n > 1)
   {
+    const double start = thread_seconds();
     const UnitCosts each = settings.costs ? settings.costs->unit_costs(comm) : UnitCosts{};
+    seconds.waiting += thread_seconds() - start;
 #pragma omp parallel for schedule(static)
     for (std::size_t k = 0; k < leaves.size(); ++k)
       until[k + 1] = each.of(work(leaves[k]));
@@ -137,6 +139,8 @@ void MultipoleSum::choose_share(MPI_Comm comm)
   for (const std::uint32_t leaf : own_leaves())
     for (std::size_t i = leaf; wanted[i] == 0; i = tree.boxes()[i].parent)
       wanted[i] = 1;
+  exchange = MomentExchange(tree, point_shares(), wanted, comm);
+  seconds.waiting += exchange.seconds_waited();
 }
 
 void MultipoleSum::learn_costs(const std::span<const double> further_seconds)
@@ -144,17 +148,24 @@ void MultipoleSum::learn_costs(const std::span<const double> further_seconds)
   if (!settings.costs)
     return;
   const double translations = seconds.translations + seconds.downward;
-  settings.costs->begin_evaluation(translations - std::exchange(seconds_learnt, translations));
-  for (std::size_t k = 0; k < own_leaves().size(); ++k)
+  double n_translations = 0;
+  for (const std::uint32_t leaf : own_leaves())
+    n_translations += work(leaf).translations;
+  settings.costs->begin_evaluation(n_translations, translations - std::exchange(seconds_learnt, translations));
+  for (std::size_t k = 0; k < own_leaves().size(); k += WorkCosts::stride_of_leaves)
     settings.costs->add_leaf(work(own_leaves()[k]), leaf_seconds[k] + further_seconds[k]);
 }
 
 void MultipoleSum::far_passes()
 {
+  const double waited_before = exchange.seconds_waited();
   {
     const Stopwatch watch(seconds.upward);
-    passes->upward([this](const Box &box, const ExpansionView &moments) { add_own_moments(box, moments); });
+    passes->upward(exchange, [this](const Box &box, const ExpansionView &moments) { add_own_moments(box, moments); });
   }
+  const double waited = exchange.seconds_waited() - waited_before;
+  seconds.upward -= waited;
+  seconds.waiting += waited;
   {
     const Stopwatch watch(seconds.translations);
     passes->translate(wanted);
@@ -207,9 +218,11 @@ void MultipoleSum::evaluate(MPI_Comm comm, const KeptExpansions &use)
     for (std::size_t k = first; k < last_leaf; k += stride)
       if (tree.boxes()[leaves[k]].n_points() > 0)
       {
-        const double start = thread_seconds();
+        const bool is_measured = (k - first_leaf) % WorkCosts::stride_of_leaves == 0;
+        const double start = is_measured ? thread_seconds() : 0.0;
         add(leaves[k]);
-        leaf_seconds[k - first_leaf] += thread_seconds() - start;
+        if (is_measured)
+          leaf_seconds[k - first_leaf] += thread_seconds() - start;
       }
   };
   if (use.part != Part::near)

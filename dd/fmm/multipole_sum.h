@@ -17,6 +17,7 @@ namespace ddfem::fmm
 struct PhaseTimes
 {
   double upward = 0, translations = 0, downward = 0, points = 0, near = 0;
+  double waiting = 0; ///< of one thread, for other ranks
 };
 
 struct MultipoleSettings
@@ -77,6 +78,8 @@ public:
   /// Degree of the local expansions.
   int local_order() const { return expansion_order_ - n_antiderivatives; }
   const PhaseTimes &times() const { return seconds; }
+  /// Multipole coefficients sent to other ranks so far.
+  std::size_t n_bytes_sent() const { return exchange.n_bytes_sent(); }
   /// Leaves that had points when the tree was made.
   std::size_t n_leaves() const { return leaves.size(); }
   /// Points of every @p stride -th leaf, in the order given.
@@ -109,7 +112,7 @@ protected:
             std::span<const Vec3> points, std::span<const std::uint32_t> leaf_of_point);
   /// As compute() after move(), with the shares of the last time, whose local expansions become the earlier ones.
   void compute_again(MPI_Comm comm);
-  /// Makes the earlier local expansions those of the moments as they are now.
+  /// Makes the earlier local expansions those of the moments as they are now. Collective.
   void compute_earlier();
   /// Evaluates the local expansions of the last compute() and what acts directly. Collective, with the shares of that time.
   void evaluate(MPI_Comm comm, const KeptExpansions &use);
@@ -179,6 +182,7 @@ private:
   std::vector<std::size_t> share;            ///< first leaf of each rank
   std::size_t first_leaf = 0, last_leaf = 0; ///< of this rank
   std::vector<std::uint8_t> wanted;          ///< boxes whose local expansion this rank needs
+  MomentExchange exchange;                   ///< with whom multipole coefficients are shared
   PhaseTimes seconds;
   std::vector<double> leaf_seconds; ///< of own_leaves() in the last evaluation
   double seconds_learnt = 0;        ///< of translations, handed to the costs already

@@ -23,18 +23,19 @@ void WorkCosts::Sums::add(const Sums &other, const double weight)
   seconds_pairs += weight * other.seconds_pairs;
 }
 
-void WorkCosts::begin_evaluation(const double seconds_of_translations)
+void WorkCosts::begin_evaluation(const double translations, const double seconds_of_translations)
 {
   const Sums before = mine;
   mine = {};
   mine.add(before, memory);
+  mine.translations += translations;
   mine.seconds_of_translations += seconds_of_translations;
 }
 
 void WorkCosts::add_leaf(const LeafWork &work, const double seconds)
 {
-  mine.add({work.translations, 0, work.points * work.points, work.points * work.pairs, work.pairs * work.pairs,
-            seconds * work.points, seconds * work.pairs},
+  mine.add({0, 0, work.points * work.points, work.points * work.pairs, work.pairs * work.pairs, seconds * work.points,
+            seconds * work.pairs},
            1);
 }
 

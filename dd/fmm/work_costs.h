@@ -3,6 +3,8 @@
 
 #include <mpi.h>
 
+#include <cstddef>
+
 namespace ddfem::fmm
 {
 /// Of the evaluation of a field at the points of a leaf, or of several.
@@ -32,8 +34,11 @@ struct UnitCosts
 class WorkCosts
 {
 public:
-  /// Adds what this rank has measured in one evaluation: each of its leaves, and all of its translations at once, s.
-  void begin_evaluation(double seconds_of_translations);
+  /// Leaves whose time is measured: every so many. The clock takes half a microsecond, which all of them would feel.
+  static constexpr std::size_t stride_of_leaves = 8;
+
+  /// Adds what this rank has measured in one evaluation: all of its translations at once, then some of its leaves, s.
+  void begin_evaluation(double translations, double seconds_of_translations);
   void add_leaf(const LeafWork &work, double seconds);
 
   /// Collective: from what all ranks of @p comm have measured, the same bits on all of them. As assumed for forces as long as nothing has

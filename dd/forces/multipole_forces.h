@@ -58,7 +58,7 @@ public:
   struct Spent
   {
     double close_pairs = 0;          ///< processor time, summed over threads, s
-    double waiting = 0;              ///< for the stresses of others, wall time, s
+    double waiting = 0;              ///< for the stresses of others, processor time, s
     std::size_t n_stresses_sent = 0; ///< to others
   };
   const Spent &spent() const { return spent_besides; }

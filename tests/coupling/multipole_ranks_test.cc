@@ -108,7 +108,7 @@ TEST(MultipoleRanks, SharesFollowMeasuredCostsAndResultsDoNot)
   {
     fmm::MultipoleSettings settings{1e-3};
     settings.costs = std::make_shared<fmm::WorkCosts>();
-    settings.costs->begin_evaluation(seconds_of_translations);
+    settings.costs->begin_evaluation(1, seconds_of_translations);
     settings.costs->add_leaf({1, 1, 1000}, 1e-3);
     settings.costs->add_leaf({1, 2, 1000}, 2e-3); // a second for 1000 points, and nothing for pairs
     return MultipoleForces(system, settings, 1e-4, MPI_COMM_WORLD);

@@ -13,7 +13,7 @@ void evaluate(WorkCosts &costs, const UnitCosts &each)
   double translations = 0;
   for (int k = 0; k < 10; ++k)
     translations += 3.0 * k;
-  costs.begin_evaluation(each.translation * translations);
+  costs.begin_evaluation(translations, each.translation * translations);
   for (int k = 0; k < 10; ++k)
   {
     const LeafWork work{3.0 * k, 10.0 + k, 1000.0 + 37 * ((7 * k) % 10)};
@@ -58,7 +58,7 @@ TEST(WorkCosts, OfTranslationsAreThoseOfAMeanEvaluation)
 TEST(WorkCosts, AreNeverNegative)
 {
   WorkCosts costs;
-  costs.begin_evaluation(1e-3);
+  costs.begin_evaluation(10, 1e-3);
   costs.add_leaf({1, 10, 1000}, 1e-3);
   costs.add_leaf({1, 10, 2000}, 0.5e-3); // pairs that save time
   const UnitCosts each = costs.unit_costs(MPI_COMM_SELF);
