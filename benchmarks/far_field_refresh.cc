@@ -8,6 +8,7 @@
 #include "benchmarks/networks.h"
 #include "dd/crystal/material.h"
 #include "dd/forces/far_field_cache.h"
+#include "dd/forces/multipole_forces.h"
 
 #include <algorithm>
 #include <array>

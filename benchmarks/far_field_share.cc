@@ -7,7 +7,7 @@
 // (cut-off). The file gets every measurement, standard output the medians.
 #include "benchmarks/networks.h"
 #include "dd/crystal/material.h"
-#include "dd/forces/multipole_field.h"
+#include "dd/forces/multipole_forces.h"
 
 #include <algorithm>
 #include <array>
@@ -100,15 +100,11 @@ Run forces_of(const Case &c, const LineSystem &system, const fmm::MultipoleSetti
   Run run;
   const double start = seconds();
   const MultipoleForces forces(system, settings, pair_tolerance, MPI_COMM_SELF, part);
-  const double middle = seconds();
-  std::vector<SegmentForces> on_segments(system.lines().size());
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::size_t i = 0; i < on_segments.size(); ++i)
-    on_segments[i] = forces(i);
+  const double end = seconds();
   const fmm::MultipoleStress &s = forces.field().sum();
   const fmm::PhaseTimes &t = s.times();
-  run.phases = {0, t.upward, t.translations, t.downward, t.points, 0, t.near, seconds() - middle};
-  run.phases[0] = middle - start - (t.upward + t.translations + t.downward + t.points + t.near);
+  run.phases = {0, t.upward, t.translations, t.downward, t.points, 0, t.near, forces.spent().close_pairs};
+  run.phases[0] = end - start - std::accumulate(run.phases.begin(), run.phases.end(), 0.0);
   run.levels = s.octree().levels().size() - 2;
   run.boxes = s.octree().boxes().size();
   run.n_points = s.octree().point_order().size();
@@ -117,8 +113,8 @@ Run forces_of(const Case &c, const LineSystem &system, const fmm::MultipoleSetti
   for (const SegmentIndex k : c.moving.network.segments())
   {
     const Segment segment = c.moving.network[k];
-    run.forces[segment.start.value] += on_segments[i].start;
-    run.forces[segment.end.value] += on_segments[i++].end;
+    run.forces[segment.start.value] += forces(i).start;
+    run.forces[segment.end.value] += forces(i++).end;
   }
   return run;
 }

@@ -35,4 +35,8 @@ MovingNetwork frank_read_sources(double t, unsigned seed = 1);
 /// not periodic, and 10 t sources of 1000 nm in basal planes. Segments of 3 nm (the thesis: 2 to 5) give 67 000 per t (the
 /// thesis: about 70 000). Loops move as a whole, sources bow out, as above.
 MovingNetwork small_loops(double t, unsigned seed = 1);
+
+/// About @p n_segments of 25 nm in loops of 16 at random in a cube, 4e13 per m^2 in the mean, in Morton order. @p clustered: nine tenths
+/// of the loops in a tenth of the volume.
+Network random_loops(std::size_t n_segments, bool clustered = false);
 } // namespace ddfem

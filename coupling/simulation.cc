@@ -102,6 +102,7 @@ ForceEnvironment Simulation::environment()
   e.images = images.get();
   e.correction = &correction;
   e.far_field = &far_field;
+  e.costs = costs;
   return e;
 }
 

@@ -107,6 +107,7 @@ private:
   std::unique_ptr<FiniteGrain> finite_grain;
   std::unique_ptr<PeriodicImages> images;
   FarFieldCache far_field;
+  std::shared_ptr<fmm::WorkCosts> costs = std::make_shared<fmm::WorkCosts>(); ///< of the forces
   OpenLines initial_open_lines;
   ProductPlane product_plane;
   StabilisedRungeKutta integrator;

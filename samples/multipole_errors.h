@@ -1,6 +1,7 @@
 // Errors of the fast multipole method on a network, against the sum of all pairs.
 #pragma once
 
+#include "dd/forces/multipole_forces.h"
 #include "dd/forces/nodal_forces.h"
 #include "samples/systems_of_lines.h"
 

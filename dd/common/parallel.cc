@@ -1,7 +1,5 @@
 #include "dd/common/parallel.h"
 
-#include <utility>
-
 namespace ddfem
 {
 namespace
@@ -11,45 +9,59 @@ IndexRange part_of(const std::size_t n, const int rank, const int size)
   const auto r = static_cast<std::size_t>(rank), s = static_cast<std::size_t>(size);
   return {n * r / s, n * (r + 1) / s};
 }
+} // namespace
 
-/// Rank and number of ranks; a program that has not initialised MPI is one rank.
-std::pair<int, int> rank_and_size(MPI_Comm comm)
+Rank rank_of(MPI_Comm comm)
 {
-  int initialised = 0, rank = 0, size = 1;
+  int initialised = 0;
+  Rank rank;
   MPI_Initialized(&initialised);
   if (initialised != 0)
   {
-    MPI_Comm_rank(comm, &rank);
-    MPI_Comm_size(comm, &size);
+    MPI_Comm_rank(comm, &rank.mine);
+    MPI_Comm_size(comm, &rank.n);
   }
-  return {rank, size};
+  return rank;
 }
-} // namespace
 
 IndexRange owned_range(const std::size_t n, MPI_Comm comm)
 {
-  const auto [rank, size] = rank_and_size(comm);
-  return part_of(n, rank, size);
+  const Rank rank = rank_of(comm);
+  return part_of(n, rank.mine, rank.n);
 }
 
-void gather_owned_bytes(void *values, const std::size_t n, const std::size_t item_size, MPI_Comm comm)
+std::vector<std::size_t> owned_ranges(const std::size_t n, MPI_Comm comm)
 {
-  const int size = rank_and_size(comm).second;
-  if (size == 1)
+  const Rank rank = rank_of(comm);
+  std::vector<std::size_t> begin;
+  for (int r = 0; r < rank.n; ++r)
+    begin.push_back(part_of(n, r, rank.n).begin);
+  begin.push_back(n);
+  return begin;
+}
+
+void gather_parts_of_bytes(void *values, const std::span<const std::size_t> begin, const std::size_t item_size,
+                           MPI_Comm comm)
+{
+  if (begin.size() <= 2)
     return;
   std::vector<int> counts, offsets;
-  for (int r = 0; r < size; ++r)
+  for (std::size_t r = 0; r + 1 < begin.size(); ++r)
   {
-    const IndexRange part = part_of(n, r, size);
-    counts.push_back(static_cast<int>((part.end - part.begin) * item_size));
-    offsets.push_back(static_cast<int>(part.begin * item_size));
+    counts.push_back(static_cast<int>(begin[r + 1] - begin[r]));
+    offsets.push_back(static_cast<int>(begin[r]));
   }
-  MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values, counts.data(), offsets.data(), MPI_BYTE, comm);
+  // Numbers of bytes would not always fit into an int.
+  MPI_Datatype item = MPI_DATATYPE_NULL;
+  MPI_Type_contiguous(static_cast<int>(item_size), MPI_BYTE, &item);
+  MPI_Type_commit(&item);
+  MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values, counts.data(), offsets.data(), item, comm);
+  MPI_Type_free(&item);
 }
 
 GatheredPoints gather_points(const std::span<const Vec3> mine, MPI_Comm comm)
 {
-  const auto [rank, size] = rank_and_size(comm);
+  const auto [rank, size] = rank_of(comm);
   if (size == 1)
     return {{mine.begin(), mine.end()}, 0};
   static_assert(sizeof(Vec3) == 3 * sizeof(double));

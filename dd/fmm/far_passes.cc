@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -63,6 +64,19 @@ public:
   }
   bool empty() const { return q.empty(); }
 
+  /// Of one box, as bytes.
+  std::size_t n_bytes() const { return n * (row_width + 1) * sizeof(Scalar); }
+  void pack(const std::size_t box, std::byte *const to) const
+  {
+    std::memcpy(to, fields.data() + box * n * row_width, n * row_width * sizeof(Scalar));
+    std::memcpy(to + n * row_width * sizeof(Scalar), q.data() + box * n, n * sizeof(Scalar));
+  }
+  void unpack(const std::size_t box, const std::byte *const from)
+  {
+    std::memcpy(fields.data() + box * n * row_width, from, n * row_width * sizeof(Scalar));
+    std::memcpy(q.data() + box * n, from + n * row_width * sizeof(Scalar), n * sizeof(Scalar));
+  }
+
 private:
   std::size_t n = 0;
   std::vector<Scalar, RowAllocator<Scalar>> fields;
@@ -95,15 +109,26 @@ public:
     }
   }
 
-  void upward(const AddToBox &add_own_moments) override
+  void upward(MomentExchange &exchange, const AddToBox &add_own_moments) override
   {
     multipole.reset(tree.boxes().size(), orders.multipole);
+    const auto unpack = [this](std::size_t box, const std::byte *from) { multipole.unpack(box, from); };
     for (std::size_t level = tree.levels().size() - 1; level-- > 0;)
     {
+      // Boxes that need children of other ranks come second, when these have had time to arrive.
+      const auto add = [&](const bool with_others)
+      {
 #pragma omp parallel for schedule(dynamic, 8)
-      for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
-        moments_of(i, add_own_moments);
+        for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
+          if (exchange.is_own(i) && exchange.needs_others(tree, tree.boxes()[i]) == with_others)
+            moments_of(i, add_own_moments);
+      };
+      add(false);
+      exchange.finish(unpack);
+      add(true);
+      exchange.start(level, multipole.n_bytes(), [this](std::size_t box, std::byte *to) { multipole.pack(box, to); });
     }
+    exchange.finish(unpack);
   }
 
   void translate(std::span<const std::uint8_t> wanted) override

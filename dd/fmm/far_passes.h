@@ -1,6 +1,7 @@
 // The far field of the boxes of a tree: multipole expansions upward, translations across, local expansions downward.
 #pragma once
 
+#include "dd/fmm/moment_exchange.h"
 #include "dd/fmm/octree.h"
 #include "dd/fmm/stress_expansion.h"
 
@@ -36,8 +37,9 @@ public:
   FarPasses(const FarPasses &) = delete;
   FarPasses &operator=(const FarPasses &) = delete;
 
-  /// Multipole coefficients of all boxes. @p add_own_moments: of the sources that a box holds itself.
-  virtual void upward(const AddToBox &add_own_moments) = 0;
+  /// Multipole coefficients of the boxes that are this rank's own in @p exchange, and that it needs of others. @p add_own_moments: of the
+  /// sources that a box holds itself. Collective.
+  virtual void upward(MomentExchange &exchange, const AddToBox &add_own_moments) = 0;
   /// Adds them to the local coefficients of distant boxes, for all boxes with wanted[box] != 0.
   virtual void translate(std::span<const std::uint8_t> wanted) = 0;
   /// Hands local coefficients down to the children. @p add_distant: of sources at infinity, at boxes of level @p distant_level.

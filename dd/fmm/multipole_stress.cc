@@ -140,16 +140,16 @@ void MultipoleStress::add_near_lines(const std::span<const unsigned> near, const
     add_distant_segment_stress(medium, line_table, distant, batch);
 }
 
-std::vector<SymTensor> MultipoleStress::stress(MPI_Comm comm, const Part part)
+std::vector<SymTensor> MultipoleStress::stress(MPI_Comm comm, const Part part, const Recipient recipient)
 {
-  compute(comm, part);
-  return in_given_order<SymTensor>();
+  compute(comm, part, recipient);
+  return in_given_order<SymTensor>(recipient);
 }
 
 std::vector<SymTensor> MultipoleStress::stress_with_kept_far_field(MPI_Comm comm, const KeptExpansions &use)
 {
   evaluate(comm, use);
-  return in_given_order<SymTensor>();
+  return in_given_order<SymTensor>(use.recipient);
 }
 
 std::vector<SymTensor> MultipoleStress::stress_with_new_far_field(MPI_Comm comm)

@@ -19,7 +19,7 @@ public:
                   std::span<const Vec3> points);
 
   /// Stress at the points in the order given, MPa. Collective: see compute().
-  std::vector<SymTensor> stress(MPI_Comm comm, Part part = Part::all);
+  std::vector<SymTensor> stress(MPI_Comm comm, Part part = Part::all, Recipient recipient = Recipient::every_rank);
 
   /// Puts other lines and points into the boxes; what distant boxes add stays as it was at the last stress(). See
   /// Octree::move().

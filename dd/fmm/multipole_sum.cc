@@ -1,10 +1,14 @@
 #include "dd/fmm/multipole_sum.h"
 
+#include "dd/common/parallel.h"
+#include "dd/common/thread_seconds.h"
 #include "dd/fmm/accuracy.h"
 #include "dd/fmm/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace ddfem::fmm
 {
@@ -90,54 +94,78 @@ std::vector<std::size_t> MultipoleSum::points_of_leaves(const std::size_t stride
   return points;
 }
 
-double MultipoleSum::work(const std::size_t leaf) const
+LeafWork MultipoleSum::work(const std::size_t leaf) const
 {
   const auto n_points = static_cast<double>(tree.boxes()[leaf].n_points());
-  double sum = translation_cost(expansion_order_);
+  LeafWork sum{0, n_points, 0};
   for (std::size_t i = leaf;; i = tree.boxes()[i].parent)
   {
-    for (const NearLink &l : tree.near_links(i))
-      sum += n_points * static_cast<double>(tree.boxes()[l.box].n_lines());
-    const double part = n_points / static_cast<double>(tree.boxes()[i].n_points());
-    sum += 0.4 * part * translation_cost(expansion_order_) * static_cast<double>(tree.far_links(i).size());
-    if (tree.boxes()[i].level == 0)
-      return sum;
+    const Box &box = tree.boxes()[i];
+    const double part = n_points / static_cast<double>(box.n_points());
+    sum.translations += part * static_cast<double>(tree.far_links(i).size());
+    if (box.level == 0)
+      break;
   }
+  sum.translations *= 0.4 * translation_cost(expansion_order_);
+  tree.for_each_near_link(leaf, [&](const NearLink &, const std::uint32_t begin, const std::uint32_t end)
+                          { sum.pairs += n_points * static_cast<double>(end - begin); });
+  return sum;
 }
 
 void MultipoleSum::choose_share(MPI_Comm comm)
 {
-  int initialised = 0, rank = 0, n_ranks = 1;
-  MPI_Initialized(&initialised);
-  if (initialised != 0)
+  const Rank rank = rank_of(comm);
+  std::vector<double> until(leaves.size() + 1, 0.0);
+  if (rank.n > 1)
   {
-    MPI_Comm_rank(comm, &rank);
-    MPI_Comm_size(comm, &n_ranks);
+    const double start = thread_seconds();
+    const UnitCosts each = settings.costs ? settings.costs->unit_costs(comm) : UnitCosts{};
+    seconds.waiting += thread_seconds() - start;
+#pragma omp parallel for schedule(static)
+    for (std::size_t k = 0; k < leaves.size(); ++k)
+      until[k + 1] = each.of(work(leaves[k]));
+    std::partial_sum(until.begin(), until.end(), until.begin());
   }
-  std::vector<double> until{0.0};
-  for (const std::uint32_t leaf : leaves)
-    until.push_back(until.back() + work(leaf));
   share.clear();
-  for (int r = 0; r <= n_ranks; ++r)
+  for (int r = 0; r <= rank.n; ++r)
   {
-    const double limit = until.back() * r / n_ranks;
+    const double limit = until.back() * r / rank.n;
     share.push_back(static_cast<std::size_t>(std::lower_bound(until.begin(), until.end(), limit) - until.begin()));
   }
   share.back() = leaves.size();
-  first_leaf = share[static_cast<std::size_t>(rank)];
-  last_leaf = share[static_cast<std::size_t>(rank) + 1];
+  first_leaf = share[static_cast<std::size_t>(rank.mine)];
+  last_leaf = share[static_cast<std::size_t>(rank.mine) + 1];
   wanted.assign(tree.boxes().size(), 0);
-  for (std::size_t k = first_leaf; k < last_leaf; ++k)
-    for (std::size_t i = leaves[k]; wanted[i] == 0; i = tree.boxes()[i].parent)
+  for (const std::uint32_t leaf : own_leaves())
+    for (std::size_t i = leaf; wanted[i] == 0; i = tree.boxes()[i].parent)
       wanted[i] = 1;
+  exchange = MomentExchange(tree, point_shares(), wanted, comm);
+  seconds.waiting += exchange.seconds_waited();
+}
+
+void MultipoleSum::learn_costs(const std::span<const double> further_seconds)
+{
+  if (!settings.costs)
+    return;
+  const double translations = seconds.translations + seconds.downward;
+  double n_translations = 0;
+  for (const std::uint32_t leaf : own_leaves())
+    n_translations += work(leaf).translations;
+  settings.costs->begin_evaluation(n_translations, translations - std::exchange(seconds_learnt, translations));
+  for (std::size_t k = 0; k < own_leaves().size(); k += WorkCosts::stride_of_leaves)
+    settings.costs->add_leaf(work(own_leaves()[k]), leaf_seconds[k] + further_seconds[k]);
 }
 
 void MultipoleSum::far_passes()
 {
+  const double waited_before = exchange.seconds_waited();
   {
     const Stopwatch watch(seconds.upward);
-    passes->upward([this](const Box &box, const ExpansionView &moments) { add_own_moments(box, moments); });
+    passes->upward(exchange, [this](const Box &box, const ExpansionView &moments) { add_own_moments(box, moments); });
   }
+  const double waited = exchange.seconds_waited() - waited_before;
+  seconds.upward -= waited;
+  seconds.waiting += waited;
   {
     const Stopwatch watch(seconds.translations);
     passes->translate(wanted);
@@ -155,12 +183,12 @@ void MultipoleSum::add_far_of(const std::size_t leaf, const double ahead)
   add_far(tree.boxes()[leaf], fields.rows(), q.data());
 }
 
-void MultipoleSum::compute(MPI_Comm comm, const Part part)
+void MultipoleSum::compute(MPI_Comm comm, const Part part, const Recipient recipient)
 {
   choose_share(comm);
   if (part != Part::near)
     far_passes();
-  evaluate(comm, {.part = part});
+  evaluate(comm, {.part = part, .recipient = recipient});
 }
 
 void MultipoleSum::compute_again(MPI_Comm comm)
@@ -181,39 +209,52 @@ void MultipoleSum::evaluate(MPI_Comm comm, const KeptExpansions &use)
 {
   for (std::vector<double> &v : values)
     v.assign(tree.point_order().size(), 0.0);
+  leaf_seconds.assign(own_leaves().size(), 0.0);
   const std::size_t stride = use.stride, first = (first_leaf + stride - 1) / stride * stride;
+  const auto on_leaves = [&](double &phase, auto &&add)
+  {
+    const Stopwatch watch(phase);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::size_t k = first; k < last_leaf; k += stride)
+      if (tree.boxes()[leaves[k]].n_points() > 0)
+      {
+        const bool is_measured = (k - first_leaf) % WorkCosts::stride_of_leaves == 0;
+        const double start = is_measured ? thread_seconds() : 0.0;
+        add(leaves[k]);
+        if (is_measured)
+          leaf_seconds[k - first_leaf] += thread_seconds() - start;
+      }
+  };
   if (use.part != Part::near)
-  {
-    const Stopwatch watch(seconds.points);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t k = first; k < last_leaf; k += stride)
-      if (tree.boxes()[leaves[k]].n_points() > 0)
-        add_far_of(leaves[k], use.ahead);
-  }
+    on_leaves(seconds.points, [&](const std::size_t leaf) { add_far_of(leaf, use.ahead); });
   if (use.part != Part::far)
-  {
-    const Stopwatch watch(seconds.near);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t k = first; k < last_leaf; k += stride)
-      if (tree.boxes()[leaves[k]].n_points() > 0)
-        add_near(leaves[k]);
-  }
-  gather(comm);
+    on_leaves(seconds.near, [&](const std::size_t leaf) { add_near(leaf); });
+  if (use.recipient == Recipient::every_rank)
+    gather(comm);
+}
+
+std::vector<std::size_t> MultipoleSum::point_shares() const
+{
+  std::vector<std::size_t> begin;
+  for (const std::size_t leaf : share)
+    begin.push_back(leaf < leaves.size() ? tree.boxes()[leaves[leaf]].points_begin : tree.point_order().size());
+  return begin;
+}
+
+std::span<const std::uint32_t> MultipoleSum::points_with_values(const Recipient recipient) const
+{
+  const std::span<const std::uint32_t> all = tree.point_order();
+  if (recipient == Recipient::every_rank)
+    return all;
+  if (own_leaves().empty())
+    return all.first(0);
+  const std::size_t begin = tree.boxes()[own_leaves().front()].points_begin;
+  return all.subspan(begin, tree.boxes()[own_leaves().back()].points_end - begin);
 }
 
 void MultipoleSum::gather(MPI_Comm comm)
 {
-  if (share.size() <= 2)
-    return;
-  std::vector<int> counts, offsets;
-  const auto first_point = [&](std::size_t leaf)
-  { return leaf < leaves.size() ? tree.boxes()[leaves[leaf]].points_begin : tree.point_order().size(); };
-  for (std::size_t r = 0; r + 1 < share.size(); ++r)
-  {
-    offsets.push_back(static_cast<int>(first_point(share[r])));
-    counts.push_back(static_cast<int>(first_point(share[r + 1]) - first_point(share[r])));
-  }
   for (std::vector<double> &v : values)
-    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, v.data(), counts.data(), offsets.data(), MPI_DOUBLE, comm);
+    gather_parts(v, point_shares(), comm);
 }
 } // namespace ddfem::fmm

@@ -3,6 +3,7 @@
 
 #include "dd/fmm/far_passes.h"
 #include "dd/fmm/octree.h"
+#include "dd/fmm/work_costs.h"
 
 #include <mpi.h>
 
@@ -16,6 +17,7 @@ namespace ddfem::fmm
 struct PhaseTimes
 {
   double upward = 0, translations = 0, downward = 0, points = 0, near = 0;
+  double waiting = 0; ///< of one thread, for other ranks
 };
 
 struct MultipoleSettings
@@ -28,6 +30,8 @@ struct MultipoleSettings
   double translation_cost_factor = 1.0;
   /// Of all boxes with lines or points, for comparison; 0: by cost.
   int depth = 0;
+  /// By which leaves are divided among ranks, see MultipoleSum::learn_costs(); null: assumed ones.
+  std::shared_ptr<WorkCosts> costs = nullptr;
 };
 
 /// Requested error from which on single precision suffices for what is not near.
@@ -41,12 +45,20 @@ enum class Part : std::uint8_t
   far
 };
 
+/// Which ranks get the values at a point.
+enum class Recipient : std::uint8_t
+{
+  every_rank,
+  owner ///< the one that computes them; elsewhere they are zero
+};
+
 /// How the local expansions of an earlier time are used.
 struct KeptExpansions
 {
   double ahead = 0;       ///< extrapolated by so many times the change before
   std::size_t stride = 1; ///< at the points of every so many leaves; zero elsewhere
   Part part = Part::all;
+  Recipient recipient = Recipient::every_rank;
 };
 
 /**
@@ -66,10 +78,25 @@ public:
   /// Degree of the local expansions.
   int local_order() const { return expansion_order_ - n_antiderivatives; }
   const PhaseTimes &times() const { return seconds; }
+  /// Multipole coefficients sent to other ranks so far.
+  std::size_t n_bytes_sent() const { return exchange.n_bytes_sent(); }
   /// Leaves that had points when the tree was made.
   std::size_t n_leaves() const { return leaves.size(); }
   /// Points of every @p stride -th leaf, in the order given.
   std::vector<std::size_t> points_of_leaves(std::size_t stride) const;
+
+  /// First point of each rank in the tree's order, and one past the last: what compute() has divided.
+  std::vector<std::size_t> point_shares() const;
+  /// Numbers of the points whose values this rank has after a call with @p recipient.
+  std::span<const std::uint32_t> points_with_values(Recipient recipient) const;
+  /// Boxes that this rank evaluates, in the order of their points.
+  std::span<const std::uint32_t> own_leaves() const
+  {
+    return std::span(leaves).subspan(first_leaf, last_leaf - first_leaf);
+  }
+  /// Hands what the last evaluation took to MultipoleSettings::costs, for the shares of the next tree. @p further_seconds: processor
+  /// time of each of own_leaves() besides the field, s.
+  void learn_costs(std::span<const double> further_seconds);
 
 protected:
   /// @p smallest_box: boxes are not divided below this edge length, nm. @p n_values: components of the field. @p n_antiderivatives: how
@@ -78,30 +105,38 @@ protected:
   MultipoleSum(const MultipoleSettings &settings, const RootGrid &grid, std::span<const SourceExtent> sources,
                std::span<const Vec3> points, double smallest_box, std::size_t n_values, int n_antiderivatives = 0);
 
-  /// Collective: every rank of @p comm computes a share of about equal cost; all get all values.
-  void compute(MPI_Comm comm, Part part);
+  /// Collective: every rank of @p comm computes a share of about equal cost.
+  void compute(MPI_Comm comm, Part part, Recipient recipient = Recipient::every_rank);
   /// Puts other sources and points into the boxes, see Octree::move(); local expansions stay those of the last compute().
   void move(std::span<const SourceExtent> sources, std::span<const std::uint32_t> box_of_source,
             std::span<const Vec3> points, std::span<const std::uint32_t> leaf_of_point);
   /// As compute() after move(), with the shares of the last time, whose local expansions become the earlier ones.
   void compute_again(MPI_Comm comm);
-  /// Makes the earlier local expansions those of the moments as they are now.
+  /// Makes the earlier local expansions those of the moments as they are now. Collective.
   void compute_earlier();
   /// Evaluates the local expansions of the last compute() and what acts directly. Collective, with the shares of that time.
   void evaluate(MPI_Comm comm, const KeptExpansions &use);
   /// Values at the points in the order given.
-  template <class Value> std::vector<Value> in_given_order() const
+  template <class Value> std::vector<Value> in_given_order(const Recipient recipient = Recipient::every_rank) const
   {
-    const std::vector<std::uint32_t> &order = tree.point_order();
-    std::vector<Value> result(order.size());
+    const std::span<const std::uint32_t> order = points_with_values(recipient);
+    const auto first = static_cast<std::size_t>(order.data() - tree.point_order().data());
+    std::vector<Value> result(tree.point_order().size(), Value(Value::Zero()));
+#pragma omp parallel for schedule(static)
     for (std::size_t k = 0; k < order.size(); ++k)
       for (std::size_t c = 0; c < values.size(); ++c)
-        result[order[k]][static_cast<Eigen::Index>(c)] = values[c][k];
+        result[order[k]][static_cast<Eigen::Index>(c)] = values[c][first + k];
     return result;
   }
-  double tolerance() const { return settings.tolerance; }
+  double tolerance() const
+  {
+    return settings.tolerance;
+  }
   /// Whether distant lines and expansions are computed in single precision.
-  bool single_precision() const { return settings.tolerance >= single_precision_from; }
+  bool single_precision() const
+  {
+    return settings.tolerance >= single_precision_from;
+  }
 
   template <std::size_t n> PointBatch<n> batch_of(const Box &box)
   {
@@ -117,7 +152,10 @@ private:
   /// Adds the moments of the sources that @p box holds itself.
   virtual void add_own_moments(const Box &box, const ExpansionView &moments) const = 0;
   /// Level of the boxes to which sources at infinity are added; -1: none.
-  virtual int distant_level() const { return -1; }
+  virtual int distant_level() const
+  {
+    return -1;
+  }
   /// Adds them to the local expansion of @p box.
   virtual void add_distant(const Box & /*box*/, const ExpansionView & /*local*/) const {}
   /// Adds a local expansion at the points of a leaf.
@@ -126,7 +164,7 @@ private:
   virtual void add_near(std::size_t leaf) = 0;
 
   void choose_share(MPI_Comm comm);
-  double work(std::size_t leaf) const;
+  LeafWork work(std::size_t leaf) const;
   void far_passes();
   void place_points(std::span<const Vec3> points);
   void add_far_of(std::size_t leaf, double ahead);
@@ -144,6 +182,9 @@ private:
   std::vector<std::size_t> share;            ///< first leaf of each rank
   std::size_t first_leaf = 0, last_leaf = 0; ///< of this rank
   std::vector<std::uint8_t> wanted;          ///< boxes whose local expansion this rank needs
+  MomentExchange exchange;                   ///< with whom multipole coefficients are shared
   PhaseTimes seconds;
+  std::vector<double> leaf_seconds; ///< of own_leaves() in the last evaluation
+  double seconds_learnt = 0;        ///< of translations, handed to the costs already
 };
 } // namespace ddfem::fmm

@@ -29,7 +29,7 @@ constexpr std::size_t largest_stride = 16, fewest_leaves = 32;
 FarFieldCache::Field fresh(const FieldRequest &r, const fmm::Part part)
 {
   auto field = std::make_shared<MultipoleField>(r.system, r.points, r.settings);
-  std::vector<SymTensor> stress = field->stress(r.comm, part);
+  std::vector<SymTensor> stress = field->stress(r.comm, part, fmm::Recipient::owner);
   return {std::move(field), std::move(stress)};
 }
 
@@ -74,7 +74,8 @@ FarFieldCache::Field FarFieldCache::evaluate(const FieldRequest &request)
   }
   ++n.kept;
   move(request, *placement);
-  return {kept->field, kept->field->stress_with_kept_far_field(request.comm, placement->lines.ahead)};
+  return {kept->field,
+          kept->field->stress_with_kept_far_field(request.comm, placement->lines.ahead, fmm::Recipient::owner)};
 }
 
 std::optional<FarFieldCache::Placement> FarFieldCache::place(const FieldRequest &request) const

@@ -63,9 +63,9 @@ public:
   struct Field
   {
     std::shared_ptr<MultipoleField> field; ///< as it was summed, until the next evaluation
-    std::vector<SymTensor> stress;         ///< at the points
+    std::vector<SymTensor> stress;         ///< at the points of this rank at least, see fmm::Recipient
   };
-  /// Collective; all ranks get all values, which do not depend on the number of ranks and threads.
+  /// Collective; the values do not depend on the number of ranks and threads.
   Field evaluate(const FieldRequest &request);
 
   /// What has been done so far.

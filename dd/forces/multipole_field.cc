@@ -46,11 +46,11 @@ MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const 
   expansions = std::make_unique<fmm::MultipoleStress>(system->medium(), settings, grid, lines, distant, points);
 }
 
-std::vector<SymTensor> MultipoleField::stress(MPI_Comm comm, const fmm::Part part)
+std::vector<SymTensor> MultipoleField::stress(MPI_Comm comm, const fmm::Part part, const fmm::Recipient recipient)
 {
-  std::vector<SymTensor> values = expansions->stress(comm, part);
+  std::vector<SymTensor> values = expansions->stress(comm, part, recipient);
   if (part != fmm::Part::near)
-    add_distant_images(values);
+    add_distant_images(values, recipient);
   return values;
 }
 
@@ -61,13 +61,14 @@ void MultipoleField::take(const std::span<const Vec3> given)
     x += system->shift_into_cell(x);
 }
 
-void MultipoleField::add_distant_images(std::vector<SymTensor> &values) const
+void MultipoleField::add_distant_images(std::vector<SymTensor> &values, const fmm::Recipient recipient) const
 {
   if (!system->far_images())
     return;
+  const std::span<const std::uint32_t> numbers = expansions->points_with_values(recipient);
 #pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < points.size(); ++i)
-    values[i] += system->far_images()->far_stress(points[i]);
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    values[numbers[k]] += system->far_images()->far_stress(points[numbers[k]]);
 }
 
 SymTensor MultipoleField::stress_of_distant_images(const std::size_t i) const
@@ -83,17 +84,19 @@ void MultipoleField::move(const LineSystem &now, const std::span<const Vec3> poi
   expansions->move(lines.lines, lines.box, points, leaf_of_point);
 }
 
-std::vector<SymTensor> MultipoleField::stress_with_kept_far_field(MPI_Comm comm, const double ahead)
+std::vector<SymTensor> MultipoleField::stress_with_kept_far_field(MPI_Comm comm, const double ahead,
+                                                                  const fmm::Recipient recipient)
 {
-  std::vector<SymTensor> values = expansions->stress_with_kept_far_field(comm, {.ahead = ahead});
-  add_distant_images(values);
+  std::vector<SymTensor> values =
+      expansions->stress_with_kept_far_field(comm, {.ahead = ahead, .recipient = recipient});
+  add_distant_images(values, recipient);
   return values;
 }
 
 std::vector<SymTensor> MultipoleField::stress_with_new_far_field(MPI_Comm comm)
 {
   std::vector<SymTensor> values = expansions->stress_with_new_far_field(comm);
-  add_distant_images(values);
+  add_distant_images(values, fmm::Recipient::every_rank);
   return values;
 }
 

@@ -1,12 +1,16 @@
+#include "dd/forces/multipole_forces.h"
+
+#include "dd/common/parallel.h"
+#include "dd/common/thread_seconds.h"
 #include "dd/elasticity/distance.h"
 #include "dd/elasticity/gauss.h"
-#include "dd/elasticity/vectorised/force_kernels.h"
 #include "dd/elasticity/vectorised/stress_kernels.h"
 #include "dd/forces/far_field_cache.h"
-#include "dd/forces/multipole_field.h"
+#include "dd/forces/stress_exchange.h"
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <utility>
 
 namespace ddfem
@@ -72,7 +76,7 @@ MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::Multipole
     : MultipoleForces(system_, settings, pair_tolerance_)
 {
   multipoles = std::make_shared<MultipoleField>(system, place_points(), settings);
-  stress = multipoles->stress(comm, part);
+  sum(multipoles->stress(comm, part, fmm::Recipient::owner), comm);
 }
 
 MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::MultipoleSettings &settings,
@@ -80,73 +84,113 @@ MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::Multipole
                                  const Network &network, PeriodicImages *const images)
     : MultipoleForces(system_, settings, pair_tolerance_)
 {
-  const std::vector<Vec3> points = place_points();
-  FarFieldCache::Field field = cache.evaluate({system, network, points, settings, images, comm});
+  const std::vector<Vec3> at = place_points();
+  FarFieldCache::Field field = cache.evaluate({system, network, at, settings, images, comm});
   multipoles = std::move(field.field);
-  stress = std::move(field.stress);
+  sum(std::move(field.stress), comm);
 }
 
 /// Gauss points of all panels.
 std::vector<Vec3> MultipoleForces::place_points()
 {
   const GaussRule rule = gauss_rule(n_gauss);
-  std::vector<Vec3> points;
-  for (std::size_t i = 0; i < system.lines().size(); ++i)
+  const std::size_t n_lines = system.lines().size();
+  std::vector<std::size_t> first{0};
+  first.reserve(n_lines + 1);
+  for (std::size_t i = 0; i < n_lines; ++i)
+    first.push_back(first.back() + n_panels(i) * rule.points.size());
+  points = PointsOfLines(std::move(first));
+  std::vector<Vec3> places(points.n_points());
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < n_lines; ++i)
   {
-    first_point.push_back(points.size());
     const StraightLine &line = system.lines()[i];
-    for (const Panel &p : panels_of(i))
-      for (const double z : rule.points)
-        points.emplace_back(line.start + (p.begin + z * (p.end - p.begin)) * (line.end - line.start));
+    std::size_t k = points.begin(i);
+    for_each_panel(i,
+                   [&](const Panel &p)
+                   {
+                     for (const double z : rule.points)
+                       places[k++] = line.start + (p.begin + z * (p.end - p.begin)) * (line.end - line.start);
+                   });
   }
-  return points;
+  return places;
 }
 
-std::vector<MultipoleForces::Panel> MultipoleForces::panels_of(const std::size_t i) const
+std::size_t MultipoleForces::n_panels(const std::size_t i) const
 {
   const StraightLine &line = system.lines()[i];
-  const double n = std::max(1.0, std::ceil((line.end - line.start).norm() / longest_panel));
-  std::vector<Panel> panels;
-  for (double k = 0; k < n; ++k)
-    panels.push_back({k / n, (k + 1) / n});
-  return panels;
+  return static_cast<std::size_t>(std::max(1.0, std::ceil((line.end - line.start).norm() / longest_panel)));
 }
 
-/// Peach-Koehler forces of the stress at the Gauss points of a panel on the ends of its line.
-template <class Stress>
-SegmentForces MultipoleForces::quadrature(const StraightLine &line, const Panel &panel, Stress &&stress_at) const
+template <class Visit> void MultipoleForces::for_each_panel(const std::size_t i, Visit &&visit) const
 {
+  const auto n = static_cast<double>(n_panels(i));
+  for (double k = 0; k < n; ++k)
+    visit(Panel{k / n, (k + 1) / n});
+}
+
+/// @p stress: at the points of this rank's leaves. What close sources add comes first, because it needs no stress.
+void MultipoleForces::sum(std::vector<SymTensor> stress, MPI_Comm comm)
+{
+  line_shares = shares_by_first_point(points, multipoles->sum());
+  StressExchange exchange(points, line_shares, multipoles->sum(), stress, comm);
+  forces.assign(points.n_lines(), {Vec3::Zero(), Vec3::Zero()});
+  const std::clock_t begin = std::clock();
+  const std::vector<double> of_leaves = replace_near();
+  spent_besides.close_pairs = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  multipoles->sum().learn_costs(of_leaves);
+  const double start = thread_seconds();
+  exchange.finish(stress);
+  spent_besides.waiting = thread_seconds() - start;
+  spent_besides.n_stresses_sent = exchange.n_sent();
+  const std::span<const std::uint32_t> own = line_shares.of(rank_of(comm).mine);
+#pragma omp parallel for schedule(static)
+  for (std::size_t k = 0; k < own.size(); ++k)
+    forces[own[k]] += quadrature(own[k], stress);
+}
+
+/// Leaf by leaf; returns the processor time of some of them, see fmm::WorkCosts, s.
+std::vector<double> MultipoleForces::replace_near()
+{
+  const fmm::Octree &tree = multipoles->sum().octree();
+  const std::span<const std::uint32_t> leaves = multipoles->sum().own_leaves();
+  std::vector<double> seconds(leaves.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t k = 0; k < leaves.size(); ++k)
+  {
+    const bool is_measured = k % fmm::WorkCosts::stride_of_leaves == 0;
+    const double start = is_measured ? thread_seconds() : 0.0;
+    const fmm::Box &leaf = tree.boxes()[leaves[k]];
+    for (const std::uint32_t point : std::span(tree.point_order()).subspan(leaf.points_begin, leaf.n_points()))
+      if (const std::size_t i = points.line_of(point); points.begin(i) == point)
+        for_each_panel(i, [&](const Panel &panel) { replace_near(i, panel, forces[i]); });
+    if (is_measured)
+      seconds[k] = thread_seconds() - start;
+  }
+  return seconds;
+}
+
+/// Peach-Koehler forces of the stress at the Gauss points of a line.
+SegmentForces MultipoleForces::quadrature(const std::size_t i, const std::vector<SymTensor> &stress) const
+{
+  const StraightLine &line = system.lines()[i];
   const Vec3 t = line.end - line.start;
   const GaussRule rule = gauss_rule(n_gauss);
-  SegmentForces f;
-  for (std::size_t q = 0; q < rule.points.size(); ++q)
-  {
-    const double s = panel.begin + rule.points[q] * (panel.end - panel.begin);
-    const Vec3 df = rule.weights[q] * (panel.end - panel.begin) * contract(stress_at(q), line.burgers).cross(t);
-    f.start += (1 - s) * df;
-    f.end += s * df;
-  }
+  SegmentForces f{Vec3::Zero(), Vec3::Zero()};
+  std::size_t point = points.begin(i);
+  for_each_panel(i,
+                 [&](const Panel &panel)
+                 {
+                   for (std::size_t q = 0; q < rule.points.size(); ++q)
+                   {
+                     const double s = panel.begin + rule.points[q] * (panel.end - panel.begin);
+                     const Vec3 df =
+                         rule.weights[q] * (panel.end - panel.begin) * contract(stress[point++], line.burgers).cross(t);
+                     f.start += (1 - s) * df;
+                     f.end += s * df;
+                   }
+                 });
   return f;
-}
-
-SegmentForces MultipoleForces::operator()(const std::size_t i) const
-{
-  SegmentForces sum;
-  std::size_t point = first_point[i];
-  for (const Panel &panel : panels_of(i))
-  {
-    sum += panel_force(i, panel, point);
-    point += static_cast<std::size_t>(n_gauss);
-  }
-  return sum;
-}
-
-SegmentForces MultipoleForces::panel_force(const std::size_t i, const Panel &panel, const std::size_t first) const
-{
-  SegmentForces force =
-      quadrature(system.lines()[i], panel, [&](std::size_t q) -> const SymTensor & { return stress[first + q]; });
-  replace_near(i, panel, force);
-  return force;
 }
 
 MultipoleForces::NearSources MultipoleForces::near_sources(const std::size_t i, const Vec3 &start,

@@ -4,6 +4,7 @@
 #include "dd/elasticity/gauss.h"
 #include "dd/elasticity/self_force.h"
 #include "dd/elasticity/vectorised/force_kernels.h"
+#include "dd/forces/multipole_forces.h"
 
 #include <optional>
 
@@ -93,6 +94,28 @@ Contributions segment_contributions(const LineSystem &system, const std::size_t 
   return c;
 }
 
+SegmentForces total_of(const Contributions &contributions)
+{
+  SegmentForces sum{Vec3::Zero(), Vec3::Zero()};
+  for (const SegmentForces &f : contributions)
+    sum += f;
+  return sum;
+}
+
+/// Values on all lines, by their numbers, of which each rank computes its share.
+template <class Compute> auto on_all_lines(const LineShares &shares, MPI_Comm comm, Compute &&compute)
+{
+  std::vector<decltype(compute(std::size_t{}))> gathered(shares.lines.size()), by_line(shares.lines.size());
+  const auto rank = static_cast<std::size_t>(rank_of(comm).mine);
+#pragma omp parallel for schedule(dynamic, 4)
+  for (std::size_t k = shares.begin[rank]; k < shares.begin[rank + 1]; ++k)
+    gathered[k] = compute(shares.lines[k]);
+  gather_parts(gathered, shares.begin, comm);
+  for (std::size_t k = 0; k < gathered.size(); ++k)
+    by_line[shares.lines[k]] = gathered[k];
+  return by_line;
+}
+
 /// Sums the segments' end forces at the nodes, in the fixed order of each node's arms.
 template <class EndForces> std::vector<Vec3> gather_at_nodes(const Network &network, EndForces &&end_forces)
 {
@@ -125,19 +148,24 @@ NodalForces compute_nodal_forces(const Network &network, const ForceSettings &se
   std::optional<MultipoleForces> multipoles;
   if (settings.summation.use_multipoles(system.lines().size()))
   {
-    const fmm::MultipoleSettings accuracy{settings.summation.tolerance};
+    fmm::MultipoleSettings accuracy{settings.summation.tolerance};
+    accuracy.costs = environment.costs;
     if (environment.far_field)
       multipoles.emplace(system, accuracy, settings.pair_tolerance, comm, *environment.far_field, network,
                          environment.images);
     else
       multipoles.emplace(system, accuracy, settings.pair_tolerance, comm);
   }
-  std::vector<Contributions> by_line(system.lines().size());
-  const IndexRange owned = owned_range(by_line.size(), comm);
-#pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t i = owned.begin; i < owned.end; ++i)
-    by_line[i] = segment_contributions(system, i, settings, environment, multipoles ? &*multipoles : nullptr);
-  gather_owned(by_line, comm);
+  const LineShares shares = multipoles ? multipoles->shares() : equal_shares(system.lines().size(), comm);
+  const auto contributions = [&](const std::size_t i)
+  { return segment_contributions(system, i, settings, environment, multipoles ? &*multipoles : nullptr); };
+  // All contributions are seven times as much to send.
+  std::vector<Contributions> by_line;
+  std::vector<SegmentForces> sums;
+  if (with_contributions)
+    by_line = on_all_lines(shares, comm, contributions);
+  else
+    sums = on_all_lines(shares, comm, [&](const std::size_t i) { return total_of(contributions(i)); });
 
   NodalForces forces;
   forces.segment_ends.resize(network.segment_capacity(), {Vec3::Zero(), Vec3::Zero()});
@@ -146,8 +174,7 @@ NodalForces compute_nodal_forces(const Network &network, const ForceSettings &se
   for (const SegmentIndex s : network.segments())
   {
     line_of[s.value] = position;
-    for (const SegmentForces &f : by_line[position])
-      forces.segment_ends[s.value] += f;
+    forces.segment_ends[s.value] = with_contributions ? total_of(by_line[position]) : sums[position];
     ++position;
   }
   forces.total = gather_at_nodes(

@@ -9,10 +9,13 @@
 #include <mpi.h>
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace ddfem
 {
+class FarFieldCache;
+
 /// Who adds to the nodal force.
 enum class ForceContribution : std::uint8_t
 {
@@ -47,6 +50,8 @@ struct ForceEnvironment
   PeriodicImages *images = nullptr;
   const SegmentField *correction = nullptr; ///< null or without points: none
   FarFieldCache *far_field = nullptr;       ///< null: it is computed at every call
+  /// By which the work of multipoles is divided among ranks, measured at every call; null: as assumed.
+  std::shared_ptr<fmm::WorkCosts> costs = nullptr;
 };
 
 /// Nodal forces, MPa nm^2 (= 1e-12 N), sample frame, indexed by NodeIndex::value.
