@@ -39,6 +39,12 @@ public:
   /// Line number @p i of @p table, moved by @p shift (nm).
   void add_moved(const LineTable &table, std::size_t i, const Vec3 &shift);
 
+  /// Removes all lines, and keeps the memory.
+  void clear()
+  {
+    blocks.clear();
+    n_lines = 0;
+  }
   void reserve(std::size_t n) { blocks.reserve((n + block_size - 1) / block_size); }
   std::size_t size() const { return n_lines; }
   std::size_t n_blocks() const { return blocks.size(); }

@@ -57,6 +57,20 @@ void LineSpheres::find(const Vec3 &centre, const double reach, const std::size_t
   find_near(x.data() + begin, y.data() + begin, z.data() + begin, radius.data() + begin, centre, reach, n, near);
 }
 
+void LineSpheres::reserve(const std::size_t n)
+{
+  for (std::vector<double> *const v : {&x, &y, &z, &radius})
+    v->reserve(n);
+}
+
+void LineSpheres::add(const Vec3 &middle, const double radius_of_line)
+{
+  x.push_back(middle[0]);
+  y.push_back(middle[1]);
+  z.push_back(middle[2]);
+  radius.push_back(radius_of_line);
+}
+
 std::vector<SourceExtent> extents_of(const std::span<const LineSource> lines)
 {
   std::vector<SourceExtent> extents;
@@ -111,15 +125,9 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
 void Octree::place_spheres()
 {
   spheres = {};
-  for (std::vector<double> *const v : {&spheres.x, &spheres.y, &spheres.z, &spheres.radius})
-    v->reserve(line_at.size());
+  spheres.reserve(line_at.size());
   for (const std::uint32_t i : line_at)
-  {
-    spheres.x.push_back(line_middle[i][0]);
-    spheres.y.push_back(line_middle[i][1]);
-    spheres.z.push_back(line_middle[i][2]);
-    spheres.radius.push_back(0.5 * line_length[i]);
-  }
+    spheres.add(line_middle[i], 0.5 * line_length[i]);
 }
 
 void Octree::measure_overhang()

@@ -72,7 +72,14 @@ struct LineSpheres
 {
   std::vector<double> x, y, z, radius;
 
-  /// Sets near[i] to whether sphere number @p begin + i touches the one of @p reach (nm) around @p centre, for i < @p n.
+  void reserve(std::size_t n);
+  void add(const Vec3 &middle, double radius);
+  /// Calls visit(k) for every sphere k in [begin, end) that touches the one of @p reach (nm) around @p centre.
+  template <class Visit>
+  void for_each_near(const Vec3 &centre, double reach, std::size_t begin, std::size_t end, Visit &&visit) const;
+
+private:
+  /// Sets near[i] to whether sphere number @p begin + i does, for i < @p n.
   void find(const Vec3 &centre, double reach, std::size_t begin, std::size_t n, std::uint8_t *near) const;
 };
 
@@ -175,6 +182,29 @@ private:
   std::vector<std::uint8_t> had_points; ///< when the tree was made
 };
 
+template <class Visit>
+void LineSpheres::for_each_near(const Vec3 &centre, const double reach, const std::size_t begin, const std::size_t end,
+                                Visit &&visit) const
+{
+  constexpr std::size_t at_once = 64, eight = 8;
+  std::uint8_t near[at_once];
+  for (std::size_t first = begin; first < end; first += at_once)
+  {
+    const std::size_t n = std::min(at_once, end - first);
+    find(centre, reach, first, n, near);
+    std::fill(near + n, near + (n + eight - 1) / eight * eight, std::uint8_t{0});
+    for (std::size_t i = 0; i < n; i += eight) // few are near: most eights hold none
+    {
+      std::uint64_t flags = 0;
+      std::memcpy(&flags, near + i, eight);
+      if (flags != 0)
+        for (std::size_t k = i; k < i + eight; ++k)
+          if (near[k] != 0)
+            visit(first + k);
+    }
+  }
+}
+
 template <class Visit> void Octree::for_each_near_link(const std::size_t leaf, Visit &&visit) const
 {
   for (std::size_t i = leaf;; i = all[i].parent)
@@ -211,23 +241,8 @@ void Octree::visit_lines(const Box &box, const Vec3 &x, const double radius, con
   }
   if (box.n_lines() == 0 || outside2 > reach * reach)
     return;
-  constexpr std::uint32_t at_once = 64, eight = 8;
-  std::uint8_t near_line[at_once];
-  for (std::uint32_t begin = box.lines_begin; begin < box.own_lines_end; begin += at_once)
-  {
-    const std::uint32_t n = std::min(at_once, box.own_lines_end - begin);
-    spheres.find(x, radius, begin, n, near_line);
-    std::fill(near_line + n, near_line + (n + eight - 1) / eight * eight, std::uint8_t{0});
-    for (std::uint32_t i = 0; i < n; i += eight) // few are near: most eights hold none
-    {
-      std::uint64_t flags = 0;
-      std::memcpy(&flags, near_line + i, eight);
-      if (flags != 0)
-        for (std::uint32_t k = i; k < i + eight; ++k)
-          if (near_line[k] != 0)
-            visit(begin + k, image);
-    }
-  }
+  spheres.for_each_near(x, radius, box.lines_begin, box.own_lines_end,
+                        [&](const std::size_t k) { visit(static_cast<std::uint32_t>(k), image); });
   for (std::uint32_t i = 0; i < box.n_children; ++i)
     visit_lines(all[box.first_child + i], x, radius, image, visit);
 }

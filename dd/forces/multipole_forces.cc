@@ -160,14 +160,34 @@ std::vector<double> MultipoleForces::replace_near()
   {
     const bool is_measured = k % fmm::WorkCosts::stride_of_leaves == 0;
     const double start = is_measured ? thread_seconds() : 0.0;
-    const fmm::Box &leaf = tree.boxes()[leaves[k]];
-    for (const std::uint32_t point : std::span(tree.point_order()).subspan(leaf.points_begin, leaf.n_points()))
-      if (const std::size_t i = points.line_of(point); points.begin(i) == point)
-        for_each_panel(i, [&](const Panel &panel) { replace_near(i, panel, forces[i]); });
+    replace_near_in(tree.boxes()[leaves[k]]);
     if (is_measured)
       seconds[k] = thread_seconds() - start;
   }
   return seconds;
+}
+
+/// On the lines that begin in a leaf.
+void MultipoleForces::replace_near_in(const fmm::Box &leaf)
+{
+  const fmm::Octree &tree = multipoles->sum().octree();
+  const auto for_each_line = [&](auto &&visit)
+  {
+    for (const std::uint32_t point : std::span(tree.point_order()).subspan(leaf.points_begin, leaf.n_points()))
+      if (const std::size_t i = points.line_of(point); points.begin(i) == point)
+        visit(i);
+  };
+  double longest = 0;
+  for_each_line(
+      [&](const std::size_t i)
+      {
+        const double length = (system.lines()[i].end - system.lines()[i].start).norm();
+        longest = std::max(longest, length / static_cast<double>(n_panels(i)));
+      });
+  // A little more than the largest half length, which is rounded otherwise.
+  Surroundings around{{tree, leaf, 0.5 * (1 + 1e-9) * near_distance * longest}, {}};
+  for_each_line([&](const std::size_t i)
+                { for_each_panel(i, [&](const Panel &panel) { replace_near(i, panel, around, forces[i]); }); });
 }
 
 /// Peach-Koehler forces of the stress at the Gauss points of a line.
@@ -193,41 +213,43 @@ SegmentForces MultipoleForces::quadrature(const std::size_t i, const std::vector
   return f;
 }
 
-MultipoleForces::NearSources MultipoleForces::near_sources(const std::size_t i, const Vec3 &start,
-                                                           const Vec3 &end) const
+void MultipoleForces::find_near_sources(const std::size_t i, const Vec3 &start, const Vec3 &end,
+                                        Surroundings &around) const
 {
   const fmm::MultipoleStress &sum = multipoles->sum();
   const fmm::Octree &tree = sum.octree();
   const Vec3 middle = 0.5 * (start + end);
   const double half = 0.5 * (end - start).norm(), reach = near_distance * half;
   const double closest = closest_distance * half;
-  NearSources near;
-  near.closest.reserve(2 * LineTable::block_size); // most panels have fewer
-  near.others.reserve(8 * LineTable::block_size);
-  tree.for_each_line_near(middle, reach,
-                          [&](const std::uint32_t k, const std::size_t image)
-                          {
-                            const fmm::LineSource &source = sum.lines()[k];
-                            const Vec3 &shift = tree.image_shifts()[image];
-                            const double squared =
-                                distance_point_segment(middle, source.start + shift, source.end + shift).squared;
-                            if (squared > reach * reach)
-                              return;
-                            // Of the images of the line itself, the one that the panel lies on.
-                            if (tree.line_order()[k] == i && squared < 1e-12 * half * half)
-                              near.itself = near.closest.size();
-                            (squared < closest * closest ? near.closest : near.others).add_moved(sum.table(), k, shift);
-                          });
-  return near;
+  NearSources &near = around.near;
+  near.closest.clear();
+  near.others.clear();
+  near.itself = no_line;
+  around.lines.for_each(middle, reach,
+                        [&](const std::uint32_t k, const std::size_t image)
+                        {
+                          const fmm::LineSource &source = sum.lines()[k];
+                          const Vec3 &shift = tree.image_shifts()[image];
+                          const double squared =
+                              distance_point_segment(middle, source.start + shift, source.end + shift).squared;
+                          if (squared > reach * reach)
+                            return;
+                          // Of the images of the line itself, the one that the panel lies on.
+                          if (tree.line_order()[k] == i && squared < 1e-12 * half * half)
+                            near.itself = near.closest.size();
+                          (squared < closest * closest ? near.closest : near.others).add_moved(sum.table(), k, shift);
+                        });
 }
 
-void MultipoleForces::replace_near(const std::size_t i, const Panel &panel, SegmentForces &force) const
+void MultipoleForces::replace_near(const std::size_t i, const Panel &panel, Surroundings &around,
+                                   SegmentForces &force) const
 {
   const StraightLine &line = system.lines()[i];
   const Vec3 t = line.end - line.start, middle = line.start + 0.5 * (panel.begin + panel.end) * t;
   const Vec3 shift = system.cell() ? system.cell()->shift_into_cell(middle) : Vec3(Vec3::Zero());
   const Vec3 start = line.start + shift + panel.begin * t, end = line.start + shift + panel.end * t;
-  const NearSources near = near_sources(i, start, end);
+  find_near_sources(i, start, end, around);
+  const NearSources &near = around.near;
   // What the sources should have added, and what they have added at the Gauss points. One point more suffices for most of them.
   const auto by_rule = [&](const LineTable &table, const int n)
   { return force_of_segments_by_rule(system.medium(), table, start, end, line.burgers, n); };

@@ -5,6 +5,7 @@
 #include "dd/elasticity/vectorised/force_kernels.h"
 #include "dd/forces/line_shares.h"
 #include "dd/forces/line_system.h"
+#include "dd/forces/lines_near_leaf.h"
 #include "dd/forces/multipole_field.h"
 
 #include <mpi.h>
@@ -77,6 +78,12 @@ private:
     LineTable others;             ///< by a rule of one point more
     std::size_t itself = no_line; ///< among the closest
   };
+  /// What the panels of a leaf share: the lines near it, and the memory for those of a panel.
+  struct Surroundings
+  {
+    LinesNearLeaf lines;
+    NearSources near;
+  };
 
   MultipoleForces(const LineSystem &system, const fmm::MultipoleSettings &settings, double pair_tolerance);
   std::vector<Vec3> place_points();
@@ -84,8 +91,9 @@ private:
   template <class Visit> void for_each_panel(std::size_t i, Visit &&visit) const;
   void sum(std::vector<SymTensor> stress, MPI_Comm comm);
   std::vector<double> replace_near();
-  void replace_near(std::size_t i, const Panel &panel, SegmentForces &force) const;
-  NearSources near_sources(std::size_t i, const Vec3 &start, const Vec3 &end) const;
+  void replace_near_in(const fmm::Box &leaf);
+  void replace_near(std::size_t i, const Panel &panel, Surroundings &around, SegmentForces &force) const;
+  void find_near_sources(std::size_t i, const Vec3 &start, const Vec3 &end, Surroundings &around) const;
   SegmentForces quadrature(std::size_t i, const std::vector<SymTensor> &stress) const;
 
   const LineSystem &system;
