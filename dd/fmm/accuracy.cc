@@ -48,7 +48,7 @@ double smallest_box(const double core_radius, const double tolerance)
 
 double translation_cost(const int order)
 {
-  return 0.1 * std::pow(order + 1, 3);
+  return 0.23 * std::pow(order + 1, 3);
 }
 
 double half_line_translation_cost(const int source_order, const int target_order)

@@ -1,5 +1,7 @@
 #include "dd/fmm/grids_and_rays.h"
 
+#include "dd/fmm/leaf_size.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,7 +9,7 @@
 namespace ddfem::fmm
 {
 RootGrid enclosing_grid(const std::span<const SourceExtent> sources, const std::span<const RaySource> rays,
-                        const std::span<const Vec3> points)
+                        const std::span<const Vec3> points, const double lines_per_leaf)
 {
   Eigen::AlignedBox3d box;
   for (const SourceExtent &s : sources)
@@ -19,11 +21,24 @@ RootGrid enclosing_grid(const std::span<const SourceExtent> sources, const std::
   if (box.isEmpty())
     return {};
   // A little wider, so that rounding leaves no point outside.
-  const double width = std::max(box.sizes().maxCoeff() * (1 + 1e-9), 1e-9) * (rays.empty() ? 1 : 4);
-  return {box.center() - Vec3::Constant(0.5 * width), Vec3::Constant(width), {1, 1, 1}, false};
+  const double slack = 1e-9 * std::max(box.sizes().maxCoeff(), 1.0), width = box.sizes().maxCoeff() + 2 * slack;
+  const bool centred = !rays.empty() || lines_per_leaf == 0;
+  RootGrid grid{centred ? Vec3(box.center() - Vec3::Constant(0.5 * width)) : Vec3(box.min() - Vec3::Constant(slack)),
+                Vec3::Constant(width),
+                {1, 1, 1},
+                false};
+  if (lines_per_leaf > 0)
+    grid = fit_to_leaves(grid, sources, lines_per_leaf, centred);
+  if (!rays.empty())
+  {
+    grid.origin -= 1.5 * grid.edges;
+    grid.edges *= 4;
+  }
+  return grid;
 }
 
-RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths)
+RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths, const std::span<const SourceExtent> sources,
+                       const double lines_per_leaf)
 {
   RootGrid grid{origin, lengths, {1, 1, 1}, true};
   for (int k = 1; k <= 4; ++k) // boxes along the shortest edge: as few as make the boxes cubes to 15 %
@@ -37,7 +52,7 @@ RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths)
     if (grid.edges.maxCoeff() < 1.15 * grid.edges.minCoeff())
       break;
   }
-  return grid;
+  return lines_per_leaf > 0 ? fit_to_leaves(grid, sources, lines_per_leaf, false) : grid;
 }
 
 std::vector<RaySource> cut_rays(const std::span<const RaySource> rays, const RootGrid &grid, const double shortest,

@@ -17,10 +17,12 @@ inline constexpr int level_of_distant_rays = 3;
 std::vector<RaySource> cut_rays(std::span<const RaySource> rays, const RootGrid &grid, double shortest,
                                 std::vector<LineSource> &lines);
 
-/// Root grid of a periodic cell from @p origin with edges @p lengths (nm): boxes that are nearly cubes.
-RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths);
+/// Root grid of a periodic cell from @p origin with edges @p lengths (nm): boxes that are nearly cubes, and that halved have about
+/// @p lines_per_leaf of the sources (0: of any number), see fit_to_leaves().
+RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths, std::span<const SourceExtent> sources = {},
+                       double lines_per_leaf = 0);
 
-/// Root cube around the middles of sources, rays' origins and points; four times as wide if there are rays.
+/// Root cube around the middles of sources, rays' origins and points; four times as wide if there are rays. @p lines_per_leaf: as above.
 RootGrid enclosing_grid(std::span<const SourceExtent> sources, std::span<const RaySource> rays,
-                        std::span<const Vec3> points);
+                        std::span<const Vec3> points, double lines_per_leaf = 0);
 } // namespace ddfem::fmm

@@ -47,6 +47,15 @@ int order_of(const MultipoleSettings &settings, const int n_antiderivatives)
 }
 } // namespace
 
+double best_lines_per_leaf(const MultipoleSettings &settings, const double points_per_line)
+{
+  if (settings.depth > 0)
+    return 0;
+  // 27 n p evaluations for each line, with p points in each of n, and 189 / n translations.
+  const double cost = translation_cost(order_at_distance(order_of(settings, 0), std::sqrt(8.0)));
+  return std::sqrt(189.0 / 27.0 * settings.translation_cost_factor * cost / points_per_line);
+}
+
 MultipoleSum::MultipoleSum(const MultipoleSettings &given, const RootGrid &grid,
                            const std::span<const SourceExtent> sources, const std::span<const Vec3> points,
                            const double smallest_box, const std::size_t n_values, const int n_antiderivatives_)

@@ -34,6 +34,10 @@ struct MultipoleSettings
   std::shared_ptr<WorkCosts> costs = nullptr;
 };
 
+/// Number of lines in a leaf at which direct work and translations cost about the same, @p points_per_line in each; 0 if the depth of the tree is
+/// given.
+double best_lines_per_leaf(const MultipoleSettings &settings, double points_per_line);
+
 /// Requested error from which on single precision suffices for what is not near.
 inline constexpr double single_precision_from = 1e-5;
 

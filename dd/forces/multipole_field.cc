@@ -40,8 +40,12 @@ MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const 
     rays.push_back({r.origin, r.direction, r.burgers});
   take(points_);
   const PeriodicCell *const cell = system->cell();
-  const fmm::RootGrid grid = cell ? fmm::periodic_grid(cell->origin, cell->lengths)
-                                  : fmm::enclosing_grid(fmm::extents_of(lines), rays, points);
+  const std::vector<fmm::SourceExtent> extents = fmm::extents_of(lines);
+  const double lines_per_leaf =
+      fmm::best_lines_per_leaf(settings, static_cast<double>(std::max<std::size_t>(points.size(), 1)) /
+                                             static_cast<double>(std::max<std::size_t>(lines.size(), 1)));
+  const fmm::RootGrid grid = cell ? fmm::periodic_grid(cell->origin, cell->lengths, extents, lines_per_leaf)
+                                  : fmm::enclosing_grid(extents, rays, points, lines_per_leaf);
   const auto distant = fmm::cut_rays(rays, grid, mean_length(system->lines()), lines);
   expansions = std::make_unique<fmm::MultipoleStress>(system->medium(), settings, grid, lines, distant, points);
 }
