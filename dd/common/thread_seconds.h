@@ -1,7 +1,7 @@
 // Processor time of one thread.
 #pragma once
 
-#include <time.h>
+#include <ctime>
 
 namespace ddfem
 {

@@ -24,20 +24,25 @@ template <class Scalar> struct BoxExpansion
   Scalar *q;
 };
 
-/// Multipole or local coefficients of all boxes.
+/// Multipole or local coefficients of the boxes that this rank has some of.
 template <class Scalar> class Expansions
 {
 public:
-  void reset(std::size_t n_boxes, int order)
+  void reset(std::span<const std::uint8_t> has, int order)
   {
     n = n_harmonics(order);
+    std::size_t n_boxes = 0;
+    place.assign(has.size(), 0);
+    for (std::size_t box = 0; box < has.size(); ++box)
+      if (has[box] != 0)
+        place[box] = n * n_boxes++;
     fields.assign(n_boxes * n * row_width, Scalar{});
     q.assign(n_boxes * n, Scalar{});
   }
   BoxExpansion<Scalar> of(const std::size_t box)
   {
     using Row = typename Precision<Scalar>::Narrow::Row;
-    return {reinterpret_cast<Row *>(fields.data() + box * n * row_width), q.data() + box * n};
+    return {reinterpret_cast<Row *>(fields.data() + place[box] * row_width), q.data() + place[box]};
   }
 
   /// Adds coefficients in double precision.
@@ -54,12 +59,12 @@ public:
   /// Adds @p factor times the coefficients of a box to @p result.
   void add_to(const ExpansionView &result, const std::size_t box, const double factor) const
   {
-    const Scalar *const of_fields = fields.data() + box * n * row_width;
+    const Scalar *const of_fields = fields.data() + place[box] * row_width;
     for (std::size_t k = 0; k < n; ++k)
     {
       for (std::size_t c = 0; c < row_width; ++c)
         result.fields[k][c] += factor * static_cast<double>(of_fields[k * row_width + c]);
-      result.q[k] += factor * static_cast<double>(q[box * n + k]);
+      result.q[k] += factor * static_cast<double>(q[place[box] + k]);
     }
   }
   bool empty() const { return q.empty(); }
@@ -68,17 +73,18 @@ public:
   std::size_t n_bytes() const { return n * (row_width + 1) * sizeof(Scalar); }
   void pack(const std::size_t box, std::byte *const to) const
   {
-    std::memcpy(to, fields.data() + box * n * row_width, n * row_width * sizeof(Scalar));
-    std::memcpy(to + n * row_width * sizeof(Scalar), q.data() + box * n, n * sizeof(Scalar));
+    std::memcpy(to, fields.data() + place[box] * row_width, n * row_width * sizeof(Scalar));
+    std::memcpy(to + n * row_width * sizeof(Scalar), q.data() + place[box], n * sizeof(Scalar));
   }
   void unpack(const std::size_t box, const std::byte *const from)
   {
-    std::memcpy(fields.data() + box * n * row_width, from, n * row_width * sizeof(Scalar));
-    std::memcpy(q.data() + box * n, from + n * row_width * sizeof(Scalar), n * sizeof(Scalar));
+    std::memcpy(fields.data() + place[box] * row_width, from, n * row_width * sizeof(Scalar));
+    std::memcpy(q.data() + place[box], from + n * row_width * sizeof(Scalar), n * sizeof(Scalar));
   }
 
 private:
   std::size_t n = 0;
+  std::vector<std::size_t> place; ///< of the first coefficient of each box
   std::vector<Scalar, RowAllocator<Scalar>> fields;
   std::vector<Scalar> q;
 };
@@ -111,7 +117,7 @@ public:
 
   void upward(MomentExchange &exchange, const AddToBox &add_own_moments) override
   {
-    multipole.reset(tree.boxes().size(), orders.multipole);
+    multipole.reset(exchange.held(tree), orders.multipole);
     const auto unpack = [this](std::size_t box, const std::byte *from) { multipole.unpack(box, from); };
     for (std::size_t level = tree.levels().size() - 1; level-- > 0;)
     {
@@ -133,7 +139,7 @@ public:
 
   void translate(std::span<const std::uint8_t> wanted) override
   {
-    local.reset(tree.boxes().size(), orders.multipole);
+    local.reset(wanted, orders.multipole);
     for (std::size_t level = 0; level + 1 < tree.levels().size(); ++level)
     {
       const std::uint32_t begin = tree.levels()[level], end = tree.levels()[level + 1];

@@ -33,6 +33,17 @@ bool MomentExchange::needs_others(const Octree &tree, const Box &box) const
   return false;
 }
 
+std::vector<std::uint8_t> MomentExchange::held(const Octree &tree) const
+{
+  std::vector<std::uint8_t> is_held(tree.boxes().size());
+  for (std::size_t i = 0; i < is_held.size(); ++i)
+    is_held[i] = is_own(i) ? 1 : 0;
+  for (const Messages &of_level : received)
+    for (const std::uint32_t box : of_level.boxes)
+      is_held[box] = 1;
+  return is_held;
+}
+
 /// Boxes of others, by their owners, in their order.
 MomentExchange::BoxesByRank MomentExchange::needed(const Octree &tree, const std::span<const std::uint8_t> wanted,
                                                    const std::size_t n_ranks) const

@@ -33,6 +33,9 @@ public:
   /// Whether it needs those of children of others for it.
   bool needs_others(const Octree &tree, const Box &box) const;
 
+  /// For each box of the tree whether its coefficients come to be on this rank, computed or received.
+  std::vector<std::uint8_t> held(const Octree &tree) const;
+
   /// Copies coefficients of a box to or from a message.
   using Pack = std::function<void(std::size_t box, std::byte *to)>;
   using Unpack = std::function<void(std::size_t box, const std::byte *from)>;
