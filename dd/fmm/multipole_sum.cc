@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace ddfem::fmm
 {
@@ -76,7 +77,7 @@ void MultipoleSum::place_points(const std::span<const Vec3> points)
 void MultipoleSum::move(const std::span<const SourceExtent> sources, const std::span<const std::uint32_t> box_of_source,
                         const std::span<const Vec3> points, const std::span<const std::uint32_t> leaf_of_point)
 {
-  tree.move(sources, box_of_source, points, leaf_of_point);
+  tree.move(sources, box_of_source, leaf_of_point);
   place_points(points);
 }
 
@@ -132,22 +133,35 @@ void MultipoleSum::choose_share(MPI_Comm comm)
       wanted[i] = 1;
 }
 
-void MultipoleSum::far_passes()
+void MultipoleSum::far_passes(const LocalExpansions local)
 {
   {
     const Stopwatch watch(seconds.upward);
     passes->upward([this](const Box &box, const ExpansionView &moments) { add_own_moments(box, moments); });
   }
-  {
-    const Stopwatch watch(seconds.translations);
-    passes->translate(wanted);
-  }
-  const Stopwatch watch(seconds.downward);
-  passes->downward(wanted, distant_level(),
-                   [this](const Box &box, const ExpansionView &expansion) { add_distant(box, expansion); });
+  FarPasses::Descent descent{wanted,
+                             distant_level(),
+                             [this](const Box &box, const ExpansionView &expansion) { add_distant(box, expansion); },
+                             {}};
+  if (local == LocalExpansions::used_once)
+    descent.use_in_leaf = [this](const Box &leaf, const ExpansionView &expansion)
+    {
+      if (leaf.n_points() > 0)
+        add_far(leaf, expansion.fields, expansion.q);
+    };
+  const FarPasses::DescentTimes times = passes->downward(descent);
+  seconds.translations += times.translations;
+  seconds.downward += times.downward;
+  seconds.points += times.leaves;
 }
 
-void MultipoleSum::add_far_of(const std::size_t leaf, const double ahead)
+void MultipoleSum::start_values()
+{
+  for (std::vector<double> &v : values)
+    v.assign(tree.point_order().size(), 0.0);
+}
+
+void MultipoleSum::add_kept_of(const std::size_t leaf, const double ahead)
 {
   RowBuffer fields(n_harmonics(expansion_order_));
   std::vector<double> q(fields.size(), 0.0);
@@ -155,50 +169,66 @@ void MultipoleSum::add_far_of(const std::size_t leaf, const double ahead)
   add_far(tree.boxes()[leaf], fields.rows(), q.data());
 }
 
-void MultipoleSum::compute(MPI_Comm comm, const Part part)
+/// Calls add(leaf) for every @p stride -th leaf, those of this rank.
+template <class Add> void MultipoleSum::for_each_leaf_of_share(const std::size_t stride, Add &&add)
+{
+  const std::size_t first = (first_leaf + stride - 1) / stride * stride;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t k = first; k < last_leaf; k += stride)
+    if (tree.boxes()[leaves[k]].n_points() > 0)
+      add(leaves[k]);
+}
+
+void MultipoleSum::compute(MPI_Comm comm, const Part part, const LocalExpansions local)
 {
   choose_share(comm);
+  if (local == LocalExpansions::kept)
+  {
+    if (part != Part::near)
+      far_passes(local);
+    return evaluate(comm, {.part = part});
+  }
+  start_values();
   if (part != Part::near)
-    far_passes();
-  evaluate(comm, {.part = part});
+    far_passes(local);
+  if (part != Part::far)
+    add_near_of_share(1);
+  gather(comm);
 }
 
 void MultipoleSum::compute_again(MPI_Comm comm)
 {
   passes->swap_local();
-  far_passes();
+  far_passes(LocalExpansions::kept);
   evaluate(comm, {});
 }
 
 void MultipoleSum::compute_earlier()
 {
   passes->swap_local();
-  far_passes();
+  far_passes(LocalExpansions::kept);
   passes->swap_local();
 }
 
 void MultipoleSum::evaluate(MPI_Comm comm, const KeptExpansions &use)
 {
-  for (std::vector<double> &v : values)
-    v.assign(tree.point_order().size(), 0.0);
-  const std::size_t stride = use.stride, first = (first_leaf + stride - 1) / stride * stride;
+  start_values();
   if (use.part != Part::near)
   {
+    if (!passes->has_local())
+      throw std::logic_error("MultipoleSum: no local expansions have been kept");
     const Stopwatch watch(seconds.points);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t k = first; k < last_leaf; k += stride)
-      if (tree.boxes()[leaves[k]].n_points() > 0)
-        add_far_of(leaves[k], use.ahead);
+    for_each_leaf_of_share(use.stride, [&](const std::size_t leaf) { add_kept_of(leaf, use.ahead); });
   }
   if (use.part != Part::far)
-  {
-    const Stopwatch watch(seconds.near);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t k = first; k < last_leaf; k += stride)
-      if (tree.boxes()[leaves[k]].n_points() > 0)
-        add_near(leaves[k]);
-  }
+    add_near_of_share(use.stride);
   gather(comm);
+}
+
+void MultipoleSum::add_near_of_share(const std::size_t stride)
+{
+  const Stopwatch watch(seconds.near);
+  for_each_leaf_of_share(stride, [this](const std::size_t leaf) { add_near(leaf); });
 }
 
 void MultipoleSum::gather(MPI_Comm comm)

@@ -41,6 +41,13 @@ enum class Part : std::uint8_t
   far
 };
 
+/// What becomes of the local expansions.
+enum class LocalExpansions : std::uint8_t
+{
+  used_once, ///< each given up when the field at its points is known
+  kept       ///< for evaluations after move(): about 300 bytes for each segment more (benchmarks.md)
+};
+
 /// How the local expansions of an earlier time are used.
 struct KeptExpansions
 {
@@ -79,7 +86,7 @@ protected:
                std::span<const Vec3> points, double smallest_box, std::size_t n_values, int n_antiderivatives = 0);
 
   /// Collective: every rank of @p comm computes a share of about equal cost; all get all values.
-  void compute(MPI_Comm comm, Part part);
+  void compute(MPI_Comm comm, Part part, LocalExpansions local = LocalExpansions::used_once);
   /// Puts other sources and points into the boxes, see Octree::move(); local expansions stay those of the last compute().
   void move(std::span<const SourceExtent> sources, std::span<const std::uint32_t> box_of_source,
             std::span<const Vec3> points, std::span<const std::uint32_t> leaf_of_point);
@@ -87,16 +94,19 @@ protected:
   void compute_again(MPI_Comm comm);
   /// Makes the earlier local expansions those of the moments as they are now.
   void compute_earlier();
-  /// Evaluates the local expansions of the last compute() and what acts directly. Collective, with the shares of that time.
+  /// Evaluates the local expansions that the last compute() has kept and what acts directly. Collective, with the shares of that
+  /// time. @throws std::logic_error if none are kept.
   void evaluate(MPI_Comm comm, const KeptExpansions &use);
-  /// Values at the points in the order given.
-  template <class Value> std::vector<Value> in_given_order() const
+  /// Values at the points in the order given; they are kept nowhere else.
+  template <class Value> std::vector<Value> take_in_given_order()
   {
     const std::vector<std::uint32_t> &order = tree.point_order();
     std::vector<Value> result(order.size());
     for (std::size_t k = 0; k < order.size(); ++k)
       for (std::size_t c = 0; c < values.size(); ++c)
         result[order[k]][static_cast<Eigen::Index>(c)] = values[c][k];
+    for (std::vector<double> &v : values)
+      v = {};
     return result;
   }
   double tolerance() const { return settings.tolerance; }
@@ -127,9 +137,12 @@ private:
 
   void choose_share(MPI_Comm comm);
   double work(std::size_t leaf) const;
-  void far_passes();
+  void far_passes(LocalExpansions local);
   void place_points(std::span<const Vec3> points);
-  void add_far_of(std::size_t leaf, double ahead);
+  void start_values();
+  void add_kept_of(std::size_t leaf, double ahead);
+  void add_near_of_share(std::size_t stride);
+  template <class Add> void for_each_leaf_of_share(std::size_t stride, Add &&add);
   void gather(MPI_Comm comm);
 
   MultipoleSettings settings;

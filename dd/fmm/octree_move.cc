@@ -28,18 +28,11 @@ std::vector<std::uint32_t> order_of(const std::span<const std::uint32_t> box_of,
 } // namespace
 
 void Octree::move(const std::span<const SourceExtent> sources, const std::span<const std::uint32_t> box_of_line,
-                  const std::span<const Vec3> points, const std::span<const std::uint32_t> leaf_of_point)
+                  const std::span<const std::uint32_t> leaf_of_point)
 {
-  line_middle.clear();
-  line_length.clear();
   longest_of_all = 0;
   for (const SourceExtent &s : sources)
-  {
-    line_middle.push_back(s.middle);
-    line_length.push_back(s.length);
     longest_of_all = std::max(longest_of_all, s.length);
-  }
-  point.assign(points.begin(), points.end());
   const auto own_lines = count(box_of_line, all.size()), own_points = count(leaf_of_point, all.size());
   std::uint32_t next_line = 0, next_point = 0;
   for (std::size_t root = 0; root < level_begin[1]; ++root)
@@ -52,8 +45,8 @@ void Octree::move(const std::span<const SourceExtent> sources, const std::span<c
   }
   line_at = order_of(box_of_line, std::move(first_line));
   point_at = order_of(leaf_of_point, std::move(first_point));
-  place_spheres();
-  measure_drift(box_of_line);
+  place_spheres(sources);
+  measure_drift(sources, box_of_line);
 }
 
 /// In the order of division: what a box holds itself, then its children.
@@ -72,14 +65,15 @@ void Octree::number_contents(const std::size_t index, const std::span<const std:
   box.points_end = next_point;
 }
 
-void Octree::measure_drift(const std::span<const std::uint32_t> box_of_line)
+void Octree::measure_drift(const std::span<const SourceExtent> sources,
+                           const std::span<const std::uint32_t> box_of_line)
 {
   std::fill(drift.begin(), drift.end(), 0.0);
   for (std::size_t i = 0; i < box_of_line.size(); ++i)
   {
     const Box &box = all[box_of_line[i]];
     const double longest = box.level == 0 ? longest_of_all : settings.longest_line * size(box);
-    const double reach = distance_outside(box_of_line[i], line_middle[i]) + 0.5 * (line_length[i] - longest);
+    const double reach = distance_outside(box_of_line[i], sources[i].middle) + 0.5 * (sources[i].length - longest);
     drift[box.level] = std::max(drift[box.level], reach);
   }
   for (std::size_t level = drift.size() - 1; level-- > 0;)

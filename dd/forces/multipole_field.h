@@ -57,7 +57,8 @@ public:
   /// As LineSystem::stress(): infinite-body stress at the points, MPa, periodic images included; those beyond the 26
   /// neighbours belong to the far part. Collective; all ranks get all values, which do not depend on the number of ranks
   /// and threads.
-  std::vector<SymTensor> stress(MPI_Comm comm, fmm::Part part = fmm::Part::all);
+  std::vector<SymTensor> stress(MPI_Comm comm, fmm::Part part = fmm::Part::all,
+                                fmm::LocalExpansions local = fmm::LocalExpansions::used_once);
 
   /// Puts lines and points of another time into the boxes, see fmm::MultipoleStress::move(). @p lines: those of @p now in
   /// its order, then others; @p points_now: the images that lie in the boxes. For systems without rays.
@@ -75,15 +76,13 @@ public:
 
   fmm::MultipoleStress &sum() { return *expansions; }
   const fmm::MultipoleStress &sum() const { return *expansions; }
-  /// The points, in a periodic cell wrapped into it.
-  const std::vector<Vec3> &at() const { return points; }
 
 private:
-  void take(std::span<const Vec3> given);
+  void keep(std::vector<Vec3> given);
   void add_distant_images(std::vector<SymTensor> &values) const;
 
   const LineSystem *system;
-  std::vector<Vec3> points; ///< wrapped into the periodic cell
+  std::vector<Vec3> points; ///< wrapped into the periodic cell; only with images beyond the neighbours
   std::unique_ptr<fmm::MultipoleStress> expansions;
 };
 
@@ -134,6 +133,7 @@ private:
 
   MultipoleForces(const LineSystem &system, const fmm::MultipoleSettings &settings, double pair_tolerance);
   std::vector<Vec3> place_points();
+  std::size_t n_panels(const StraightLine &line) const;
   std::vector<Panel> panels_of(std::size_t i) const;
   SegmentForces panel_force(std::size_t i, const Panel &panel, std::size_t first_point) const;
   void replace_near(std::size_t i, const Panel &panel, SegmentForces &force) const;
@@ -147,7 +147,7 @@ private:
   double near_distance;     ///< of sources that are replaced, in half lengths of the panel
   double closest_distance;  ///< of those that closed forms replace
   double longest_panel = 0; ///< nm
-  std::vector<std::size_t> first_point;
+  std::vector<std::uint32_t> first_point;
   std::shared_ptr<MultipoleField> multipoles;
   std::vector<SymTensor> stress;
 };

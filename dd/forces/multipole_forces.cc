@@ -90,10 +90,17 @@ MultipoleForces::MultipoleForces(const LineSystem &system_, const fmm::Multipole
 std::vector<Vec3> MultipoleForces::place_points()
 {
   const GaussRule rule = gauss_rule(n_gauss);
+  std::size_t n_points = 0;
+  first_point.reserve(system.lines().size());
+  for (const StraightLine &line : system.lines())
+  {
+    first_point.push_back(static_cast<std::uint32_t>(n_points));
+    n_points += n_panels(line) * rule.points.size();
+  }
   std::vector<Vec3> points;
+  points.reserve(n_points);
   for (std::size_t i = 0; i < system.lines().size(); ++i)
   {
-    first_point.push_back(points.size());
     const StraightLine &line = system.lines()[i];
     for (const Panel &p : panels_of(i))
       for (const double z : rule.points)
@@ -102,10 +109,14 @@ std::vector<Vec3> MultipoleForces::place_points()
   return points;
 }
 
+std::size_t MultipoleForces::n_panels(const StraightLine &line) const
+{
+  return static_cast<std::size_t>(std::max(1.0, std::ceil((line.end - line.start).norm() / longest_panel)));
+}
+
 std::vector<MultipoleForces::Panel> MultipoleForces::panels_of(const std::size_t i) const
 {
-  const StraightLine &line = system.lines()[i];
-  const double n = std::max(1.0, std::ceil((line.end - line.start).norm() / longest_panel));
+  const auto n = static_cast<double>(n_panels(system.lines()[i]));
   std::vector<Panel> panels;
   for (double k = 0; k < n; ++k)
     panels.push_back({k / n, (k + 1) / n});
@@ -163,7 +174,7 @@ MultipoleForces::NearSources MultipoleForces::near_sources(const std::size_t i, 
   tree.for_each_line_near(middle, reach,
                           [&](const std::uint32_t k, const std::size_t image)
                           {
-                            const fmm::LineSource &source = sum.lines()[k];
+                            const fmm::LineSource source = sum.line(k);
                             const Vec3 &shift = tree.image_shifts()[image];
                             const double squared =
                                 distance_point_segment(middle, source.start + shift, source.end + shift).squared;
