@@ -214,20 +214,18 @@ private:
   {
     std::vector<std::uint32_t> next(across.size() + 1, 0); // of the first task of each translation
     const std::uint32_t first_of_level = tree.levels()[tree.boxes()[begin].level];
-    const auto for_each_task = [&](auto &&visit)
-    {
-      for (std::uint32_t i = begin; i < end; ++i)
-        if (wanted[i] != 0)
-          for (const FarLink &l : tree.far_links(i))
-            visit(across.number(l.offset), i, l.box);
-    };
-    for_each_task([&](std::uint32_t translation, std::uint32_t, std::uint32_t) { ++next[translation + 1]; });
+    std::vector<Task> by_target;
+    for (std::uint32_t i = begin; i < end; ++i)
+      if (wanted[i] != 0)
+        for (const FarLink &l : tree.far_links(i))
+        {
+          by_target.push_back({across.number(l.offset), i - begin, l.box - first_of_level});
+          ++next[by_target.back().translation + 1];
+        }
     std::partial_sum(next.begin(), next.end(), next.begin());
-    std::vector<Task> tasks(next.back());
-    for_each_task(
-        [&](std::uint32_t translation, std::uint32_t target, std::uint32_t source) {
-          tasks[next[translation]++] = {translation, target - begin, source - first_of_level};
-        });
+    std::vector<Task> tasks(by_target.size());
+    for (const Task &task : by_target)
+      tasks[next[task.translation]++] = task;
     return tasks;
   }
 

@@ -100,7 +100,7 @@ double MultipoleSum::work(const std::size_t leaf) const
     for (const NearLink &l : tree.near_links(i))
       sum += n_points * static_cast<double>(tree.boxes()[l.box].n_lines());
     const double part = n_points / static_cast<double>(tree.boxes()[i].n_points());
-    sum += 0.4 * part * translation_cost(expansion_order_) * static_cast<double>(tree.far_links(i).size());
+    sum += 0.4 * part * translation_cost(expansion_order_) * static_cast<double>(tree.n_far_links(i));
     if (tree.boxes()[i].level == 0)
       return sum;
   }

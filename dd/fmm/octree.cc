@@ -90,21 +90,23 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
       if (all[i].level < deepest_level && is_worth_dividing(i, level.neighbours[i - begin]))
         divide(i, contents);
     level_begin.push_back(static_cast<std::uint32_t>(all.size()));
-    LevelPairs children(end, all.size() - end);
-#pragma omp parallel for schedule(dynamic, 8)
+    count_contents();
+#pragma omp parallel for schedule(dynamic, 64)
     for (std::size_t i = begin; i < end; ++i)
-      pair_children(i, level, children);
+      link_neighbours(i, level);
     near.append(level.near);
-    far.append(level.far);
+    adjacent.append(level.neighbours);
+    n_far.insert(n_far.end(), level.n_far.begin(), level.n_far.end());
+    LevelPairs children(end, all.size() - end);
+#pragma omp parallel for schedule(dynamic, 64)
+    for (std::size_t i = end; i < all.size(); ++i)
+      for_each_pair(i, [&](const Neighbour &source) { pair(i, source, children); });
     level = std::move(children);
   }
   level_begin.pop_back(); // the last level is empty
   place_spheres(sources);
   for (const Box &box : all)
-  {
     centres.push_back(centre(box));
-    had_points.push_back(box.n_points() > 0 ? 1 : 0);
-  }
   drift.assign(level_begin.size(), 0.0);
 }
 
@@ -160,25 +162,51 @@ void Octree::sort_into_roots(const Contents &contents)
     all.push_back(box);
   }
   level_begin = {0, static_cast<std::uint32_t>(all.size())};
+  count_contents();
+}
+
+void Octree::count_contents()
+{
+  for (std::size_t i = made_with.size(); i < all.size(); ++i)
+    made_with.push_back({all[i].n_points(), all[i].n_lines()});
 }
 
 Octree::LevelPairs Octree::pair_roots() const
 {
   LevelPairs roots(0, all.size());
   for (std::size_t target = 0; target < all.size(); ++target)
-    for (std::size_t image = 0; image < shifts.size(); ++image)
-      for (std::size_t source = 0; source < all.size(); ++source)
-      {
-        Neighbour link{static_cast<std::uint32_t>(source), {}, static_cast<std::uint8_t>(image)};
-        for (std::size_t c = 0; c < 3; ++c)
-        {
-          const auto axis = static_cast<int>(c);
-          const auto shift = static_cast<int>(std::lround(shifts[image][axis] / grid.edges[axis]));
-          link.offset[c] = static_cast<std::int16_t>(all[source].place[c] + shift - all[target].place[c]);
-        }
-        pair(target, link, roots);
-      }
+    for_each_pair(target, [&](const Neighbour &source) { pair(target, source, roots); });
   return roots;
+}
+
+/// Calls visit(source) for every box of the level whose parent is a neighbour of that of @p target.
+template <class Visit> void Octree::for_each_pair(const std::size_t target, Visit &&visit) const
+{
+  const Box &a = all[target];
+  if (a.level > 0)
+  {
+    for (const Neighbour &n : adjacent.of(a.parent))
+      for (std::uint32_t j = 0; j < all[n.box].n_children; ++j)
+      {
+        Neighbour link{all[n.box].first_child + j, {}, n.image};
+        for (std::size_t c = 0; c < 3; ++c)
+          link.offset[c] = static_cast<std::int16_t>(2 * n.offset[c] + (all[link.box].place[c] & 1) - (a.place[c] & 1));
+        visit(link);
+      }
+    return;
+  }
+  for (std::size_t image = 0; image < shifts.size(); ++image)
+    for (std::uint32_t source = 0; source < level_begin[1]; ++source)
+    {
+      Neighbour link{source, {}, static_cast<std::uint8_t>(image)};
+      for (std::size_t c = 0; c < 3; ++c)
+      {
+        const auto axis = static_cast<int>(c);
+        const auto shift = static_cast<int>(std::lround(shifts[image][axis] / grid.edges[axis]));
+        link.offset[c] = static_cast<std::int16_t>(all[source].place[c] + shift - a.place[c]);
+      }
+      visit(link);
+    }
 }
 
 double Octree::translation_cost(const std::array<std::int16_t, 3> &offset) const
@@ -241,43 +269,59 @@ void Octree::divide(const std::size_t index, const Contents &contents)
   all[index] = box;
 }
 
-void Octree::pair(const std::size_t target, const Neighbour &source, LevelPairs &level) const
+Octree::PairKind Octree::kind_of(const std::size_t target, const Neighbour &source) const
 {
-  const Box &a = all[target], &b = all[source.box];
   const auto &d = source.offset;
-  const std::size_t i = target - level.first_box;
   if (std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}) <= 1)
-    level.neighbours[i].push_back(source);
-  else if (a.n_points() == 0 || b.n_lines() == 0)
-    return;
-  else if (settings.depth == 0 && static_cast<double>(a.n_points() * b.n_lines()) < translation_cost(d))
-    level.near[i].push_back({source.box, source.image, false});
-  else
-    level.far[i].push_back({source.box, d});
+    return PairKind::neighbours;
+  const std::size_t n_points = made_with[target].n_points, n_lines = made_with[source.box].n_lines;
+  if (n_points == 0 || n_lines == 0)
+    return PairKind::none;
+  if (settings.depth == 0 && static_cast<double>(n_points * n_lines) < translation_cost(d))
+    return PairKind::direct;
+  return PairKind::far;
 }
 
-void Octree::pair_children(const std::size_t box, LevelPairs &level, LevelPairs &children) const
+void Octree::pair(const std::size_t target, const Neighbour &source, LevelPairs &level) const
+{
+  const std::size_t i = target - level.first_box;
+  switch (kind_of(target, source))
+  {
+    case PairKind::none: break;
+    case PairKind::neighbours: level.neighbours[i].push_back(source); break;
+    case PairKind::direct: level.near[i].push_back({source.box, source.image, false}); break;
+    case PairKind::far: ++level.n_far[i];
+  }
+}
+
+/// Direct work of neighbours of which one is not divided, or holds lines itself. Gives up the neighbours of leaves.
+void Octree::link_neighbours(const std::size_t box, LevelPairs &level) const
 {
   const Box &a = all[box];
-  for (const Neighbour &n : level.neighbours[box - level.first_box])
+  const std::size_t i = box - level.first_box;
+  for (const Neighbour &n : level.neighbours[i])
   {
     const Box &b = all[n.box];
     const bool both = !a.is_leaf() && !b.is_leaf();
     if (a.n_points() > 0 && (both ? b.own_lines_end : b.lines_end) > b.lines_begin)
-      level.near[box - level.first_box].push_back({n.box, n.image, both});
-    if (!both)
-      continue;
-    for (std::uint32_t i = 0; i < a.n_children; ++i)
-      for (std::uint32_t j = 0; j < b.n_children; ++j)
-      {
-        const std::uint32_t target = a.first_child + i;
-        Neighbour link{b.first_child + j, {}, n.image};
-        for (std::size_t c = 0; c < 3; ++c)
-          link.offset[c] =
-              static_cast<std::int16_t>(2 * n.offset[c] + (all[link.box].place[c] & 1) - (all[target].place[c] & 1));
-        pair(target, link, children);
-      }
+      level.near[i].push_back({n.box, n.image, both});
   }
+  if (a.is_leaf())
+    level.neighbours[i] = {};
+}
+
+std::vector<FarLink> Octree::far_links(const std::size_t box) const
+{
+  std::vector<FarLink> links;
+  links.reserve(n_far[box]);
+  if (n_far[box] > 0)
+    for_each_pair(box,
+                  [&](const Neighbour &source)
+                  {
+                    if (kind_of(box, source) == PairKind::far)
+                      links.push_back({source.box, source.offset});
+                  });
+  return links;
 }
 
 Vec3 Octree::centre(const Box &box) const

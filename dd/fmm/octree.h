@@ -131,7 +131,9 @@ public:
   /// First box of each level, and one past the last box.
   const std::vector<std::uint32_t> &levels() const { return level_begin; }
   std::span<const NearLink> near_links(std::size_t box) const { return near.of(box); }
-  std::span<const FarLink> far_links(std::size_t box) const { return far.of(box); }
+  /// Computed from the neighbours of the parent: kept, they would be most of the tree's memory.
+  std::vector<FarLink> far_links(std::size_t box) const;
+  std::size_t n_far_links(std::size_t box) const { return n_far[box]; }
 
   /// Position in the tree's order -> index in what the constructor was given.
   const std::vector<std::uint32_t> &line_order() const { return line_at; }
@@ -171,9 +173,21 @@ private:
     std::size_t first_box;
     std::vector<std::vector<Neighbour>> neighbours;
     std::vector<std::vector<NearLink>> near;
-    std::vector<std::vector<FarLink>> far;
+    std::vector<std::uint32_t> n_far;
 
-    LevelPairs(std::size_t first, std::size_t n) : first_box(first), neighbours(n), near(n), far(n) {}
+    LevelPairs(std::size_t first, std::size_t n) : first_box(first), neighbours(n), near(n), n_far(n, 0) {}
+  };
+  /// How two boxes of one level act on each other.
+  enum class PairKind : std::uint8_t
+  {
+    none,
+    neighbours,
+    direct,
+    far
+  };
+  struct Counts
+  {
+    std::size_t n_points, n_lines;
   };
   struct Contents
   {
@@ -186,7 +200,10 @@ private:
   LevelPairs pair_roots() const;
   bool is_worth_dividing(std::size_t box, const std::vector<Neighbour> &neighbours) const;
   void divide(std::size_t box, const Contents &contents);
-  void pair_children(std::size_t box, LevelPairs &level, LevelPairs &children) const;
+  void count_contents();
+  template <class Visit> void for_each_pair(std::size_t target, Visit &&visit) const;
+  PairKind kind_of(std::size_t target, const Neighbour &source) const;
+  void link_neighbours(std::size_t box, LevelPairs &level) const;
   void pair(std::size_t target, const Neighbour &source, LevelPairs &level) const;
   double translation_cost(const std::array<std::int16_t, 3> &offset) const;
   void place_spheres(std::span<const SourceExtent> sources);
@@ -200,13 +217,14 @@ private:
   std::vector<Box> all;
   std::vector<std::uint32_t> level_begin;
   LinkLists<NearLink> near;
-  LinkLists<FarLink> far;
+  LinkLists<Neighbour> adjacent; ///< of boxes with children
+  std::vector<std::uint32_t> n_far;
   std::vector<std::uint32_t> line_at, point_at;
   std::vector<Vec3> shifts;
   LineSpheres spheres;
-  std::vector<Vec3> centres;            ///< of the boxes, nm
-  double longest_of_all = 0;            ///< line, nm
-  std::vector<std::uint8_t> had_points; ///< when the tree was made
+  std::vector<Vec3> centres;     ///< of the boxes, nm
+  double longest_of_all = 0;     ///< line, nm
+  std::vector<Counts> made_with; ///< contents of the boxes when the tree was made
   std::vector<double> drift; ///< by level: how much farther lines of its boxes and their children reach than then, nm
 };
 

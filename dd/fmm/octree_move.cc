@@ -96,7 +96,7 @@ std::uint32_t Octree::leaf_at(const Vec3 &x) const
     std::uint32_t best = begin;
     double distance = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = begin; i < end; ++i)
-      if (const double d = distance_outside(i, x); had_points[i] != 0 && d < distance)
+      if (const double d = distance_outside(i, x); made_with[i].n_points > 0 && d < distance)
       {
         best = i;
         distance = d;
@@ -104,7 +104,7 @@ std::uint32_t Octree::leaf_at(const Vec3 &x) const
     return best;
   };
   auto box = static_cast<std::uint32_t>(root_at(x));
-  if (had_points[box] == 0)
+  if (made_with[box].n_points == 0)
     box = nearest(0, level_begin[1]);
   while (!all[box].is_leaf())
   {
@@ -114,7 +114,7 @@ std::uint32_t Octree::leaf_at(const Vec3 &x) const
     for (std::size_t c = 0; c < 3; ++c)
       place[c] = 2 * all[box].place[c] + (x[static_cast<int>(c)] >= centres[box][static_cast<int>(c)] ? 1 : 0);
     std::uint32_t child = begin;
-    while (child < end && (all[child].place != place || had_points[child] == 0))
+    while (child < end && (all[child].place != place || made_with[child].n_points == 0))
       ++child;
     box = child < end ? child : nearest(begin, end);
   }
