@@ -91,6 +91,14 @@ std::vector<std::size_t> MultipoleSum::points_of_leaves(const std::size_t stride
   return points;
 }
 
+std::vector<Vec3> MultipoleSum::points() const
+{
+  std::vector<Vec3> result(tree.point_order().size());
+  for (std::size_t k = 0; k < result.size(); ++k)
+    result[tree.point_order()[k]] = {x[0][k], x[1][k], x[2][k]};
+  return result;
+}
+
 double MultipoleSum::work(const std::size_t leaf) const
 {
   const auto n_points = static_cast<double>(tree.boxes()[leaf].n_points());

@@ -45,7 +45,7 @@ enum class Part : std::uint8_t
 enum class LocalExpansions : std::uint8_t
 {
   used_once, ///< each given up when the field at its points is known
-  kept       ///< for evaluations after move(): about 300 bytes for each segment more (benchmarks.md)
+  kept       ///< for evaluations after move(): some 250 bytes more for each segment (docs/benchmarks.md)
 };
 
 /// How the local expansions of an earlier time are used.
@@ -77,6 +77,8 @@ public:
   std::size_t n_leaves() const { return leaves.size(); }
   /// Points of every @p stride -th leaf, in the order given.
   std::vector<std::size_t> points_of_leaves(std::size_t stride) const;
+  /// In the order given, nm.
+  std::vector<Vec3> points() const;
 
 protected:
   /// @p smallest_box: boxes are not divided below this edge length, nm. @p n_values: components of the field. @p n_antiderivatives: how

@@ -76,6 +76,8 @@ public:
 
   fmm::MultipoleStress &sum() { return *expansions; }
   const fmm::MultipoleStress &sum() const { return *expansions; }
+  /// The points, in a periodic cell wrapped into it.
+  std::vector<Vec3> at() const { return expansions->points(); }
 
 private:
   void keep(std::vector<Vec3> given);
