@@ -104,7 +104,7 @@ MultipoleErrors MultipoleErrorMeter::errors(const double tolerance, const double
   e.order = forces.field().sum().order();
   e.n_gauss = forces.n_gauss_points();
   // A field of the same points has the same tree.
-  const std::vector<Vec3> &on_lines = forces.field().at();
+  const std::vector<Vec3> on_lines = forces.field().at();
   const auto exact = system.stress(on_lines);
   MultipoleField field(system, on_lines, settings);
   const auto far = field.sum().stress(MPI_COMM_SELF, fmm::Part::far);

@@ -50,6 +50,12 @@ public:
   std::size_t n_blocks() const { return blocks.size(); }
   /// The lines behind the last one are zero.
   const Block &block(std::size_t k) const { return blocks[k]; }
+  /// The three rows from @p first on of line @p i.
+  Vec3 vector(const std::size_t i, const Row first) const
+  {
+    const double *const rows = line(i) + first * block_size;
+    return {rows[0], rows[block_size], rows[2 * block_size]};
+  }
   /// The first row of line @p i; row r is r * block_size numbers further on.
   const double *line(std::size_t i) const { return &blocks[i / block_size].value[0][i % block_size]; }
 

@@ -1,10 +1,12 @@
 #include "dd/fmm/far_passes.h"
 
+#include "dd/fmm/box_expansions.h"
 #include "dd/fmm/far_translations.h"
+#include "dd/fmm/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <limits>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -14,90 +16,8 @@ namespace ddfem::fmm
 {
 namespace
 {
-/// Boxes whose translations are sorted by direction together; the unit of work of a thread.
+/// Boxes whose translations are sorted by direction together.
 constexpr std::uint32_t boxes_per_chunk = 64;
-
-/// Coefficients of one box, see ExpansionView.
-template <class Scalar> struct BoxExpansion
-{
-  typename Precision<Scalar>::Narrow::Row *fields;
-  Scalar *q;
-};
-
-/// Multipole or local coefficients of the boxes that this rank has some of.
-template <class Scalar> class Expansions
-{
-public:
-  void reset(std::span<const std::uint8_t> has, int order)
-  {
-    n = n_harmonics(order);
-    std::size_t n_boxes = 0;
-    place.assign(has.size(), 0);
-    for (std::size_t box = 0; box < has.size(); ++box)
-      if (has[box] != 0)
-        place[box] = n * n_boxes++;
-    fields.assign(n_boxes * n * row_width, Scalar{});
-    q.assign(n_boxes * n, Scalar{});
-  }
-  BoxExpansion<Scalar> of(const std::size_t box)
-  {
-    using Row = typename Precision<Scalar>::Narrow::Row;
-    return {reinterpret_cast<Row *>(fields.data() + place[box] * row_width), q.data() + place[box]};
-  }
-
-  /// Adds coefficients in double precision.
-  void add(const std::size_t box, const ExpansionView &given)
-  {
-    const BoxExpansion<Scalar> sum = of(box);
-    for (std::size_t k = 0; k < n; ++k)
-    {
-      for (std::size_t c = 0; c < row_width; ++c)
-        sum.fields[k][c] += static_cast<Scalar>(given.fields[k][c]);
-      sum.q[k] += static_cast<Scalar>(given.q[k]);
-    }
-  }
-  /// Adds @p factor times the coefficients of a box to @p result.
-  void add_to(const ExpansionView &result, const std::size_t box, const double factor) const
-  {
-    const Scalar *const of_fields = fields.data() + place[box] * row_width;
-    for (std::size_t k = 0; k < n; ++k)
-    {
-      for (std::size_t c = 0; c < row_width; ++c)
-        result.fields[k][c] += factor * static_cast<double>(of_fields[k * row_width + c]);
-      result.q[k] += factor * static_cast<double>(q[place[box] + k]);
-    }
-  }
-  bool empty() const { return q.empty(); }
-
-  /// Of one box, as bytes.
-  std::size_t n_bytes() const { return n * (row_width + 1) * sizeof(Scalar); }
-  void pack(const std::size_t box, std::byte *const to) const
-  {
-    std::memcpy(to, fields.data() + place[box] * row_width, n * row_width * sizeof(Scalar));
-    std::memcpy(to + n * row_width * sizeof(Scalar), q.data() + place[box], n * sizeof(Scalar));
-  }
-  void unpack(const std::size_t box, const std::byte *const from)
-  {
-    std::memcpy(fields.data() + place[box] * row_width, from, n * row_width * sizeof(Scalar));
-    std::memcpy(q.data() + place[box], from + n * row_width * sizeof(Scalar), n * sizeof(Scalar));
-  }
-
-private:
-  std::size_t n = 0;
-  std::vector<std::size_t> place; ///< of the first coefficient of each box
-  std::vector<Scalar, RowAllocator<Scalar>> fields;
-  std::vector<Scalar> q;
-};
-
-/// Coefficients of one box in double precision, zero at first.
-struct BoxBuffer
-{
-  RowBuffer fields;
-  std::vector<double> q;
-
-  explicit BoxBuffer(const int order) : fields(n_harmonics(order)), q(n_harmonics(order), 0.0) {}
-  ExpansionView view() { return {fields.rows(), q.data()}; }
-};
 
 template <class Scalar> class Passes final : public FarPasses
 {
@@ -117,9 +37,10 @@ public:
 
   void upward(MomentExchange &exchange, const AddToBox &add_own_moments) override
   {
-    multipole.reset(exchange.held(tree), orders.multipole);
-    const auto unpack = [this](std::size_t box, const std::byte *from) { multipole.unpack(box, from); };
-    for (std::size_t level = tree.levels().size() - 1; level-- > 0;)
+    make_room(exchange.held(tree));
+    const auto unpack = [this](const std::size_t box, const std::byte *from)
+    { multipole[tree.boxes()[box].level].unpack(place_of_moments[box], from); };
+    for (std::size_t level = n_levels(); level-- > 0;)
     {
       // Boxes that need children of other ranks come second, when these have had time to arrive.
       const auto add = [&](const bool with_others)
@@ -132,40 +53,58 @@ public:
       add(false);
       exchange.finish(unpack);
       add(true);
-      exchange.start(level, multipole.n_bytes(), [this](std::size_t box, std::byte *to) { multipole.pack(box, to); });
+      exchange.start(level, multipole[level].n_bytes(),
+                     [&](const std::size_t box, std::byte *to) { multipole[level].pack(place_of_moments[box], to); });
     }
     exchange.finish(unpack);
   }
 
-  void translate(std::span<const std::uint8_t> wanted) override
+  DescentTimes downward(const Descent &descent) override
   {
-    local.reset(wanted, orders.multipole);
-    for (std::size_t level = 0; level + 1 < tree.levels().size(); ++level)
+    DescentTimes sum;
+    const bool keeps = !descent.use_in_leaf;
+    local.resize(n_levels());
+    place.resize(tree.boxes().size());
+    for (std::size_t level = 0; level < n_levels(); ++level)
     {
       const std::uint32_t begin = tree.levels()[level], end = tree.levels()[level + 1];
-#pragma omp parallel for schedule(dynamic, 1)
-      for (std::uint32_t b = begin; b < end; b += boxes_per_chunk)
-        translate_chunk(b, std::min(b + boxes_per_chunk, end), wanted);
+      local[level].reset(number_places(level, keeps), orders.multipole);
+#pragma omp parallel
+      {
+        Chunk chunk{};
+        DescentTimes times;
+#pragma omp for schedule(dynamic, 1)
+        for (std::uint32_t b = begin; b < end; b += boxes_per_chunk)
+        {
+          chunk.begin = b;
+          chunk.end = std::min(b + boxes_per_chunk, end);
+          chunk.level = level;
+          descend_to(chunk, descent, times);
+        }
+#pragma omp critical
+        sum += times;
+      }
+      multipole[level] = {};
+      if (!keeps && level > 0)
+        local[level - 1] = {};
     }
+    if (!keeps)
+      local.clear();
+    return sum;
   }
 
-  void downward(std::span<const std::uint8_t> wanted, const int distant_level, const AddToBox &add_distant) override
+  bool has_local() const override
   {
-    for (std::size_t level = 0; level + 1 < tree.levels().size(); ++level)
-    {
-#pragma omp parallel for schedule(dynamic, 8)
-      for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
-        if (wanted[i] != 0)
-          pass_down_to(i, distant_level, add_distant);
-    }
+    return !local.empty();
   }
 
   void copy_local(const std::size_t box, const double ahead, const ExpansionView &result) const override
   {
     const bool extrapolated = ahead != 0 && !earlier.empty();
-    local.add_to(result, box, extrapolated ? 1 + ahead : 1);
+    const std::size_t level = tree.boxes()[box].level, i = number_in_level(box);
+    local[level].add_to(result, i, extrapolated ? 1 + ahead : 1);
     if (extrapolated)
-      earlier.add_to(result, box, -ahead);
+      earlier[level].add_to(result, i, -ahead);
   }
 
   void swap_local() override
@@ -178,10 +117,80 @@ private:
   using WideRow = typename Precision<Scalar>::Wide::Row;
   static constexpr std::size_t wide = row_size / sizeof(Scalar); ///< numbers in a wide row
 
+  /// Boxes [begin, end) of one level, the unit of work of a thread, and their local coefficients.
+  struct Chunk
+  {
+    std::uint32_t begin, end;
+    std::size_t level;
+    Expansions<Scalar> local;
+  };
   struct Task
   {
-    std::uint32_t translation, target, source;
+    std::uint32_t translation;
+    std::uint32_t target, source; ///< from the first box of the chunk on, and place of the moments
   };
+
+  std::size_t n_levels() const
+  {
+    return tree.levels().size() - 1;
+  }
+  std::size_t number_in_level(const std::size_t box) const
+  {
+    return box - tree.levels()[tree.boxes()[box].level];
+  }
+  BoxExpansion<Scalar> moments(const std::size_t box)
+  {
+    return multipole[tree.boxes()[box].level].of(place_of_moments[box]);
+  }
+
+  /// For the moments of the boxes with held[box] != 0, level by level.
+  void make_room(std::span<const std::uint8_t> held)
+  {
+    multipole.resize(n_levels());
+    place_of_moments.assign(held.size(), 0);
+    for (std::size_t level = 0; level < n_levels(); ++level)
+    {
+      std::uint32_t n = 0;
+      for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
+        place_of_moments[i] = held[i] != 0 ? n++ : none;
+      multipole[level].reset(n, orders.multipole);
+    }
+  }
+
+  /// Gives a place among the kept local coefficients of a level to all boxes, or to those with children only.
+  std::size_t number_places(const std::size_t level, const bool all)
+  {
+    std::uint32_t n = 0;
+    for (std::size_t i = tree.levels()[level]; i < tree.levels()[level + 1]; ++i)
+      place[i] = all || !tree.boxes()[i].is_leaf() ? n++ : none;
+    return n;
+  }
+
+  /// Local coefficients of a chunk; those of its parents are complete.
+  void descend_to(Chunk &chunk, const Descent &descent, DescentTimes &times)
+  {
+    chunk.local.reset(chunk.end - chunk.begin, orders.multipole);
+    {
+      const ThreadStopwatch watch(times.translations);
+      translate_to(chunk, descent.wanted);
+    }
+    {
+      const ThreadStopwatch watch(times.downward);
+      for (std::uint32_t i = chunk.begin; i < chunk.end; ++i)
+        if (descent.wanted[i] != 0)
+          pass_down_to(chunk, i, descent);
+    }
+    if (!descent.use_in_leaf)
+      return;
+    const ThreadStopwatch watch(times.leaves);
+    for (std::uint32_t i = chunk.begin; i < chunk.end; ++i)
+      if (descent.wanted[i] != 0 && tree.boxes()[i].is_leaf())
+      {
+        BoxBuffer of_leaf(orders.multipole);
+        chunk.local.add_to(of_leaf.view(), i - chunk.begin, 1);
+        descent.use_in_leaf(tree.boxes()[i], of_leaf.view());
+      }
+  }
 
   void moments_of(const std::size_t index, const AddToBox &add_own_moments)
   {
@@ -192,12 +201,12 @@ private:
     {
       BoxBuffer own(orders.multipole);
       add_own_moments(box, own.view());
-      multipole.add(index, own.view());
+      multipole[box.level].add(place_of_moments[index], own.view());
     }
     const Vec3 centre = tree.centre(box);
     for (std::size_t i = box.first_child; i < box.first_child + box.n_children; ++i)
       if (const Box &child = tree.boxes()[i]; child.n_lines() > 0)
-        translate_box(to_parent[child.octant()], centre - tree.centre(child), multipole.of(i), multipole.of(index));
+        translate_box(to_parent[child.octant()], centre - tree.centre(child), moments(i), moments(index));
   }
 
   /// Fields, and Q with its new reference point; @p shift (nm) from the old one.
@@ -229,27 +238,26 @@ private:
   std::vector<Task> tasks_by_translation(const std::uint32_t begin, const std::uint32_t end,
                                          std::span<const std::uint8_t> wanted) const
   {
-    std::vector<std::uint32_t> place(across.size() + 1, 0); // of the first task of each translation
-    const auto for_each_task = [&](auto &&visit)
-    {
-      for (std::uint32_t i = begin; i < end; ++i)
-        if (wanted[i] != 0)
-          for (const FarLink &l : tree.far_links(i))
-            visit(across.number(l.offset), i, l.box);
-    };
-    for_each_task([&](std::uint32_t translation, std::uint32_t, std::uint32_t) { ++place[translation + 1]; });
-    std::partial_sum(place.begin(), place.end(), place.begin());
-    std::vector<Task> tasks(place.back());
-    for_each_task(
-        [&](std::uint32_t translation, std::uint32_t target, std::uint32_t source) {
-          tasks[place[translation]++] = {translation, target, source};
-        });
+    std::vector<std::uint32_t> next(across.size() + 1, 0); // of the first task of each translation
+    std::vector<Task> by_target;
+    for (std::uint32_t i = begin; i < end; ++i)
+      if (wanted[i] != 0)
+        for (const FarLink &l : tree.far_links(i))
+        {
+          by_target.push_back({across.number(l.offset), i - begin, place_of_moments[l.box]});
+          ++next[by_target.back().translation + 1];
+        }
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<Task> tasks(by_target.size());
+    for (const Task &task : by_target)
+      tasks[next[task.translation]++] = task;
     return tasks;
   }
 
-  void translate_chunk(const std::uint32_t begin, const std::uint32_t end, std::span<const std::uint8_t> wanted)
+  /// Adds what distant boxes contribute.
+  void translate_to(Chunk &chunk, std::span<const std::uint8_t> wanted)
   {
-    const std::vector<Task> tasks = tasks_by_translation(begin, end, wanted);
+    const std::vector<Task> tasks = tasks_by_translation(chunk.begin, chunk.end, wanted);
     for (std::size_t first = 0, last = 0; first < tasks.size(); first = last)
     {
       while (last < tasks.size() && last - first < wide && tasks[last].translation == tasks[first].translation)
@@ -258,86 +266,97 @@ private:
       if constexpr (std::is_same_v<Scalar, double>)
         if (orders.n_antiderivatives > 0)
         {
-          add_far_integrals(across.integrals(some.front().translation), some);
+          add_far_integrals(across.integrals(some.front().translation), some, chunk);
           continue;
         }
-      add_far(across.translation(some.front().translation), some);
+      add_far(across.translation(some.front().translation), some, chunk);
     }
   }
 
-  void add_far(const BasicTranslation<Scalar> &translation, std::span<const Task> tasks);
-  void add_far_q(const BasicTranslation<Scalar> &translation, std::span<const Task> tasks);
-  void add_far_integrals(const HalfLineTranslation &translation, std::span<const Task> tasks);
+  void add_far(const BasicTranslation<Scalar> &translation, std::span<const Task> tasks, Chunk &chunk);
+  void add_far_q(const BasicTranslation<Scalar> &translation, std::span<const Task> tasks, Chunk &chunk);
+  void add_far_integrals(const HalfLineTranslation &translation, std::span<const Task> tasks, Chunk &chunk);
 
-  void pass_down_to(const std::size_t index, const int distant_level, const AddToBox &add_distant)
+  void pass_down_to(Chunk &chunk, const std::size_t index, const Descent &descent)
   {
     const Box &box = tree.boxes()[index];
+    const std::size_t i = index - chunk.begin;
     if (box.level > 0)
       translate_box(to_child[box.octant()], tree.centre(box) - tree.centre(tree.boxes()[box.parent]),
-                    local.of(box.parent), local.of(index));
-    if (box.level == distant_level)
+                    local[chunk.level - 1].of(place[box.parent]), chunk.local.of(i));
+    if (box.level == descent.distant_level)
     {
       BoxBuffer distant(orders.multipole);
-      add_distant(box, distant.view());
-      local.add(index, distant.view());
+      descent.add_distant(box, distant.view());
+      chunk.local.add(i, distant.view());
     }
+    if (place[index] != none)
+      local[chunk.level].copy(place[index], chunk.local, i);
   }
 
   const Octree &tree;
   ExpansionOrders orders;
   FarTranslations<Scalar> across;
   std::vector<BasicTranslation<Scalar>> to_parent, to_child;
-  Expansions<Scalar> multipole, local;
-  Expansions<Scalar> earlier; ///< local ones
+  std::vector<Expansions<Scalar>> multipole, local; ///< by level
+  std::vector<Expansions<Scalar>> earlier;          ///< local ones
+  static constexpr auto none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> place;            ///< of boxes in `local`
+  std::vector<std::uint32_t> place_of_moments; ///< of boxes in `multipole`
 };
 
 template <class Scalar>
-void Passes<Scalar>::add_far(const BasicTranslation<Scalar> &translation, const std::span<const Task> tasks)
+void Passes<Scalar>::add_far(const BasicTranslation<Scalar> &translation, const std::span<const Task> tasks,
+                             Chunk &chunk)
 {
+  Expansions<Scalar> &sources = multipole[chunk.level];
   std::size_t i = 0;
   for (; i + 1 < tasks.size(); i += 2)
-    translation.add_two({multipole.of(tasks[i].source).fields, multipole.of(tasks[i + 1].source).fields},
-                        {local.of(tasks[i].target).fields, local.of(tasks[i + 1].target).fields});
+    translation.add_two({sources.of(tasks[i].source).fields, sources.of(tasks[i + 1].source).fields},
+                        {chunk.local.of(tasks[i].target).fields, chunk.local.of(tasks[i + 1].target).fields});
   if (i == tasks.size())
-    return add_far_q(translation, tasks);
+    return add_far_q(translation, tasks, chunk);
   if constexpr (std::is_same_v<Scalar, double>)
-    translation.add(multipole.of(tasks[i].source).fields, local.of(tasks[i].target).fields);
+    translation.add(sources.of(tasks[i].source).fields, chunk.local.of(tasks[i].target).fields);
   else
   {
     // In the left half of wide rows, too: in narrow ones products may be contracted differently, and who has a neighbour depends on the rank.
     alignas(row_size) Row unused[n_harmonics(max_order)];
     std::fill(unused, unused + n_harmonics(translation.order()), Row{});
-    const auto source = multipole.of(tasks[i].source).fields;
-    translation.add_two({source, source}, {local.of(tasks[i].target).fields, unused});
+    const auto source = sources.of(tasks[i].source).fields;
+    translation.add_two({source, source}, {chunk.local.of(tasks[i].target).fields, unused});
   }
-  add_far_q(translation, tasks);
+  add_far_q(translation, tasks, chunk);
 }
 
 template <class Scalar>
-void Passes<Scalar>::add_far_q(const BasicTranslation<Scalar> &translation, const std::span<const Task> tasks)
+void Passes<Scalar>::add_far_q(const BasicTranslation<Scalar> &translation, const std::span<const Task> tasks,
+                               Chunk &chunk)
 {
+  Expansions<Scalar> &sources = multipole[chunk.level];
   const std::size_t n = n_harmonics(translation.order());
-  const Vec3 shift = tree.size(tree.boxes()[tasks[0].target]) * translation.vector();
+  const Vec3 shift = tree.size(tree.boxes()[chunk.begin]) * translation.vector();
   alignas(row_size) WideRow in[n_harmonics(max_order)];
   alignas(row_size) WideRow out[n_harmonics(max_order)];
   std::fill(in, in + n, WideRow{});
   std::fill(out, out + n, WideRow{});
   for (std::size_t i = 0; i < tasks.size(); ++i)
-    move_q(n, shift, multipole.of(tasks[i].source), in, i);
+    move_q(n, shift, sources.of(tasks[i].source), in, i);
   translation.add_wide(in, out);
   for (std::size_t i = 0; i < tasks.size(); ++i)
   {
-    Scalar *const q = local.of(tasks[i].target).q;
+    Scalar *const q = chunk.local.of(tasks[i].target).q;
     for (std::size_t k = 0; k < n; ++k)
       q[k] += out[k][i];
   }
 }
 
 template <>
-void Passes<double>::add_far_integrals(const HalfLineTranslation &translation, const std::span<const Task> tasks)
+void Passes<double>::add_far_integrals(const HalfLineTranslation &translation, const std::span<const Task> tasks,
+                                       Chunk &chunk)
 {
   const std::size_t n_in = n_harmonics(translation.source_order()), n_out = n_harmonics(translation.target_order());
-  const double size = tree.size(tree.boxes()[tasks[0].target]), unit = std::pow(size, orders.n_antiderivatives);
+  const double size = tree.size(tree.boxes()[chunk.begin]), unit = std::pow(size, orders.n_antiderivatives);
   const Vec3 shift = size * translation.vector();
   alignas(row_size) Row in[n_harmonics(max_order)];
   alignas(row_size) Row out[n_harmonics(max_order)];
@@ -348,7 +367,7 @@ void Passes<double>::add_far_integrals(const HalfLineTranslation &translation, c
     std::fill(out, out + n_out, Row{});
     for (std::size_t i = 0; i < pair.size(); ++i)
     {
-      const BoxExpansion<double> source = multipole.of(pair[i].source);
+      const BoxExpansion<double> source = multipole[chunk.level].of(pair[i].source);
       move_q(n_in, shift, source, in, 4 * i + 3);
       for (std::size_t k = 0; k < n_in; ++k)
         for (std::size_t c = 0; c < 3; ++c)
@@ -360,7 +379,7 @@ void Passes<double>::add_far_integrals(const HalfLineTranslation &translation, c
       out[harmonic_index(1, m)] += 0.5 * std::log(size) * in[harmonic_index(1, m)];
     for (std::size_t i = 0; i < pair.size(); ++i)
     {
-      const BoxExpansion<double> target = local.of(pair[i].target);
+      const BoxExpansion<double> target = chunk.local.of(pair[i].target);
       for (std::size_t k = 0; k < n_out; ++k)
       {
         for (std::size_t c = 0; c < 3; ++c)

@@ -37,14 +37,38 @@ public:
   FarPasses(const FarPasses &) = delete;
   FarPasses &operator=(const FarPasses &) = delete;
 
+  /// What to do with local coefficients.
+  struct Descent
+  {
+    std::span<const std::uint8_t> wanted; ///< boxes with wanted[box] != 0, and their parents
+    int distant_level;                    ///< of the boxes to which sources at infinity are added
+    AddToBox add_distant;
+    /// Called once for every wanted leaf, from several threads. If empty, the coefficients of all wanted boxes are kept.
+    AddToBox use_in_leaf;
+  };
+  /// Processor time summed over threads, s.
+  struct DescentTimes
+  {
+    double translations = 0, downward = 0, leaves = 0;
+
+    DescentTimes &operator+=(const DescentTimes &t)
+    {
+      translations += t.translations;
+      downward += t.downward;
+      leaves += t.leaves;
+      return *this;
+    }
+  };
+
   /// Multipole coefficients of the boxes that are this rank's own in @p exchange, and that it needs of others. @p add_own_moments: of the
   /// sources that a box holds itself. Collective.
   virtual void upward(MomentExchange &exchange, const AddToBox &add_own_moments) = 0;
-  /// Adds them to the local coefficients of distant boxes, for all boxes with wanted[box] != 0.
-  virtual void translate(std::span<const std::uint8_t> wanted) = 0;
-  /// Hands local coefficients down to the children. @p add_distant: of sources at infinity, at boxes of level @p distant_level.
-  virtual void downward(std::span<const std::uint8_t> wanted, int distant_level, const AddToBox &add_distant) = 0;
-  /// Copies the local coefficients of a box to zeroed rows; extrapolated by @p ahead times their change since the
+  /// From the root down, adds multipole coefficients to the local ones of distant boxes, and hands these down to the children.
+  /// Gives up multipole coefficients, and local ones that are not kept, as soon as nothing needs them.
+  virtual DescentTimes downward(const Descent &descent) = 0;
+  /// Whether the last descent has kept local coefficients.
+  virtual bool has_local() const = 0;
+  /// Copies kept local coefficients of a box to zeroed rows; extrapolated by @p ahead times their change since the
   /// earlier ones, if there are any.
   virtual void copy_local(std::size_t box, double ahead, const ExpansionView &local) const = 0;
   /// Makes the local coefficients the earlier ones, and the other way round.

@@ -29,7 +29,7 @@ int n_points_along(const double length, const double distance, const int n_grid)
 std::size_t coarsest_far_level(const Octree &tree)
 {
   for (std::size_t box = 0; box < tree.boxes().size(); ++box)
-    if (!tree.far_links(box).empty())
+    if (tree.n_far_links(box) > 0)
       return tree.boxes()[box].level;
   return tree.levels().size() - 1;
 }
@@ -118,7 +118,7 @@ GridExpansions::Level GridExpansions::level_of(const std::size_t level) const
   std::set<Offset> offsets;
   for (std::uint32_t i = begin; i < end; ++i)
   {
-    if (tree.far_links(i).empty())
+    if (tree.n_far_links(i) == 0)
       continue;
     l.targets.push_back(i);
     for (const FarLink &link : tree.far_links(i))

@@ -59,6 +59,6 @@ void MultipoleDisplacement::add_near(const std::size_t leaf)
 std::vector<Vec3> MultipoleDisplacement::displacement(MPI_Comm comm, const Part part)
 {
   compute(comm, part);
-  return in_given_order<Vec3>();
+  return take_in_given_order<Vec3>();
 }
 } // namespace ddfem::fmm

@@ -170,12 +170,12 @@ void MultipoleImages::add_near_stress(const std::span<const std::uint32_t> near,
 std::vector<SymTensor> MultipoleImages::stress(MPI_Comm comm, const Part part)
 {
   compute(comm, part);
-  return in_given_order<SymTensor>();
+  return take_in_given_order<SymTensor>();
 }
 
 std::vector<Vec3> MultipoleImages::displacement(MPI_Comm comm, const Part part)
 {
   compute(comm, part);
-  return in_given_order<Vec3>();
+  return take_in_given_order<Vec3>();
 }
 } // namespace ddfem::fmm

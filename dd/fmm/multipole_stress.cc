@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace ddfem::fmm
 {
@@ -56,34 +57,33 @@ MultipoleStress::MultipoleStress(const IsotropicMedium &medium_, const Multipole
     : MultipoleSum(given, grid, extents_of(lines), points, smallest_box(medium_.a, given.tolerance), 6),
       medium(medium_), rays(distant_rays.begin(), distant_rays.end())
 {
-  take(lines);
+  line_table = in_order_of_tree(lines);
   for (const RaySource &r : rays)
     ray_table.add_ray(r.origin, r.direction, r.burgers);
 }
 
-void MultipoleStress::take(const std::span<const LineSource> lines)
+LineTable MultipoleStress::in_order_of_tree(const std::span<const LineSource> lines) const
 {
-  sources.clear();
-  sources.reserve(lines.size());
-  line_table = {};
-  line_table.reserve(lines.size());
+  LineTable table;
+  table.reserve(lines.size());
   for (const std::uint32_t i : octree().line_order())
-  {
-    sources.push_back(lines[i]);
-    line_table.add_segment(lines[i].start, lines[i].end, lines[i].burgers);
-  }
+    table.add_segment(lines[i].start, lines[i].end, lines[i].burgers);
+  return table;
 }
 
 void MultipoleStress::move(const std::span<const LineSource> lines, const std::span<const std::uint32_t> box_of_line,
                            const std::span<const Vec3> points, const std::span<const std::uint32_t> leaf_of_point)
 {
   MultipoleSum::move(extents_of(lines), box_of_line, points, leaf_of_point);
-  take(lines);
+  line_table = in_order_of_tree(lines);
 }
 
 void MultipoleStress::add_own_moments(const Box &box, const ExpansionView &moments) const
 {
-  const std::span own(sources.data() + box.lines_begin, box.own_lines_end - box.lines_begin);
+  std::vector<LineSource> own;
+  own.reserve(box.own_lines_end - box.lines_begin);
+  for (std::size_t k = box.lines_begin; k < box.own_lines_end; ++k)
+    own.push_back(line(k));
   add_moments(order(), 0.1 * tolerance(), octree().centre(box), octree().size(box), own, moments);
 }
 
@@ -140,28 +140,30 @@ void MultipoleStress::add_near_lines(const std::span<const unsigned> near, const
     add_distant_segment_stress(medium, line_table, distant, batch);
 }
 
-std::vector<SymTensor> MultipoleStress::stress(MPI_Comm comm, const Part part, const Recipient recipient)
+std::vector<SymTensor> MultipoleStress::stress(MPI_Comm comm, const Part part, const Recipient recipient,
+                                               const LocalExpansions local)
 {
-  compute(comm, part, recipient);
-  return in_given_order<SymTensor>(recipient);
+  compute(comm, part, recipient, local);
+  return take_in_given_order<SymTensor>(recipient);
 }
 
 std::vector<SymTensor> MultipoleStress::stress_with_kept_far_field(MPI_Comm comm, const KeptExpansions &use)
 {
   evaluate(comm, use);
-  return in_given_order<SymTensor>(use.recipient);
+  return take_in_given_order<SymTensor>(use.recipient);
 }
 
 std::vector<SymTensor> MultipoleStress::stress_with_new_far_field(MPI_Comm comm)
 {
   compute_again(comm);
-  return in_given_order<SymTensor>();
+  return take_in_given_order<SymTensor>();
 }
 
-void MultipoleStress::set_earlier(std::vector<LineSource> lines)
+void MultipoleStress::set_earlier(const std::span<const LineSource> lines)
 {
-  sources.swap(lines);
+  LineTable earlier = in_order_of_tree(lines);
+  std::swap(line_table, earlier);
   compute_earlier();
-  sources.swap(lines);
+  std::swap(line_table, earlier);
 }
 } // namespace ddfem::fmm

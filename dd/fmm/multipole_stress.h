@@ -19,7 +19,8 @@ public:
                   std::span<const Vec3> points);
 
   /// Stress at the points in the order given, MPa. Collective: see compute().
-  std::vector<SymTensor> stress(MPI_Comm comm, Part part = Part::all, Recipient recipient = Recipient::every_rank);
+  std::vector<SymTensor> stress(MPI_Comm comm, Part part = Part::all, Recipient recipient = Recipient::every_rank,
+                                LocalExpansions local = LocalExpansions::used_once);
 
   /// Puts other lines and points into the boxes; what distant boxes add stays as it was at the last stress(). See
   /// Octree::move().
@@ -29,15 +30,20 @@ public:
   std::vector<SymTensor> stress_with_kept_far_field(MPI_Comm comm, const KeptExpansions &use);
   /// The same with a new far field; the last one is kept for extrapolation.
   std::vector<SymTensor> stress_with_new_far_field(MPI_Comm comm);
-  /// Replaces the far field that was kept for extrapolation by that of the same lines at other places, in the order of lines().
-  void set_earlier(std::vector<LineSource> lines);
+  /// Replaces the far field that was kept for extrapolation by that of the same lines at other places, in the order given.
+  void set_earlier(std::span<const LineSource> lines);
 
   /// The lines in the order of the tree.
-  const std::vector<LineSource> &lines() const { return sources; }
   const LineTable &table() const { return line_table; }
+  /// Number @p k of them.
+  LineSource line(const std::size_t k) const
+  {
+    return {line_table.vector(k, LineTable::first_end), line_table.vector(k, LineTable::second_end),
+            line_table.vector(k, LineTable::burgers)};
+  }
 
 private:
-  void take(std::span<const LineSource> lines);
+  LineTable in_order_of_tree(std::span<const LineSource> lines) const;
   void add_own_moments(const Box &box, const ExpansionView &moments) const override;
   int distant_level() const override { return rays.empty() ? -1 : level_of_distant_rays; }
   void add_distant(const Box &box, const ExpansionView &local) const override;
@@ -48,8 +54,8 @@ private:
                       const StressBatch &batch, const Vec3 &shift) const;
 
   IsotropicMedium medium;
-  std::vector<LineSource> sources; ///< in the tree's order
   std::vector<RaySource> rays;
-  LineTable line_table, ray_table; ///< of both
+  LineTable line_table; ///< in the tree's order
+  LineTable ray_table;
 };
 } // namespace ddfem::fmm

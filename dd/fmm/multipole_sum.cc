@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 namespace ddfem::fmm
@@ -89,7 +90,7 @@ void MultipoleSum::place_points(const std::span<const Vec3> points)
 void MultipoleSum::move(const std::span<const SourceExtent> sources, const std::span<const std::uint32_t> box_of_source,
                         const std::span<const Vec3> points, const std::span<const std::uint32_t> leaf_of_point)
 {
-  tree.move(sources, box_of_source, points, leaf_of_point);
+  tree.move(sources, box_of_source, leaf_of_point);
   place_points(points);
 }
 
@@ -103,6 +104,14 @@ std::vector<std::size_t> MultipoleSum::points_of_leaves(const std::size_t stride
   return points;
 }
 
+std::vector<Vec3> MultipoleSum::points() const
+{
+  std::vector<Vec3> result(tree.point_order().size());
+  for (std::size_t k = 0; k < result.size(); ++k)
+    result[tree.point_order()[k]] = {x[0][k], x[1][k], x[2][k]};
+  return result;
+}
+
 LeafWork MultipoleSum::work(const std::size_t leaf) const
 {
   const auto n_points = static_cast<double>(tree.boxes()[leaf].n_points());
@@ -111,7 +120,7 @@ LeafWork MultipoleSum::work(const std::size_t leaf) const
   {
     const Box &box = tree.boxes()[i];
     const double part = n_points / static_cast<double>(box.n_points());
-    sum.translations += part * static_cast<double>(tree.far_links(i).size());
+    sum.translations += part * static_cast<double>(tree.n_far_links(i));
     if (box.level == 0)
       break;
   }
@@ -156,7 +165,7 @@ void MultipoleSum::learn_costs(const std::span<const double> further_seconds)
 {
   if (!settings.costs)
     return;
-  const double translations = seconds.translations + seconds.downward;
+  const double translations = seconds.translations + seconds.downward + seconds.points;
   double n_translations = 0;
   for (const std::uint32_t leaf : own_leaves())
     n_translations += work(leaf).translations;
@@ -165,7 +174,7 @@ void MultipoleSum::learn_costs(const std::span<const double> further_seconds)
     settings.costs->add_leaf(work(own_leaves()[k]), leaf_seconds[k] + further_seconds[k]);
 }
 
-void MultipoleSum::far_passes()
+void MultipoleSum::far_passes(const LocalExpansions local)
 {
   const double waited_before = exchange.seconds_waited();
   {
@@ -175,16 +184,30 @@ void MultipoleSum::far_passes()
   const double waited = exchange.seconds_waited() - waited_before;
   seconds.upward -= waited;
   seconds.waiting += waited;
-  {
-    const Stopwatch watch(seconds.translations);
-    passes->translate(wanted);
-  }
-  const Stopwatch watch(seconds.downward);
-  passes->downward(wanted, distant_level(),
-                   [this](const Box &box, const ExpansionView &expansion) { add_distant(box, expansion); });
+  FarPasses::Descent descent{wanted,
+                             distant_level(),
+                             [this](const Box &box, const ExpansionView &expansion) { add_distant(box, expansion); },
+                             {}};
+  if (local == LocalExpansions::used_once)
+    descent.use_in_leaf = [this](const Box &leaf, const ExpansionView &expansion)
+    {
+      if (leaf.n_points() > 0)
+        add_far(leaf, expansion.fields, expansion.q);
+    };
+  const FarPasses::DescentTimes times = passes->downward(descent);
+  seconds.translations += times.translations;
+  seconds.downward += times.downward;
+  seconds.points += times.leaves;
 }
 
-void MultipoleSum::add_far_of(const std::size_t leaf, const double ahead)
+void MultipoleSum::start_values()
+{
+  for (std::vector<double> &v : values)
+    v.assign(tree.point_order().size(), 0.0);
+  leaf_seconds.assign(own_leaves().size(), 0.0);
+}
+
+void MultipoleSum::add_kept_of(const std::size_t leaf, const double ahead)
 {
   RowBuffer fields(n_harmonics(expansion_order_));
   std::vector<double> q(fields.size(), 0.0);
@@ -192,52 +215,60 @@ void MultipoleSum::add_far_of(const std::size_t leaf, const double ahead)
   add_far(tree.boxes()[leaf], fields.rows(), q.data());
 }
 
-void MultipoleSum::compute(MPI_Comm comm, const Part part, const Recipient recipient)
+/// Calls add(number in the share, leaf) for every @p stride -th leaf, those of this rank.
+template <class Add> void MultipoleSum::for_each_leaf_of_share(const std::size_t stride, Add &&add)
+{
+  const std::size_t first = (first_leaf + stride - 1) / stride * stride;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t k = first; k < last_leaf; k += stride)
+    if (tree.boxes()[leaves[k]].n_points() > 0)
+      add(k - first_leaf, leaves[k]);
+}
+
+void MultipoleSum::compute(MPI_Comm comm, const Part part, const Recipient recipient, const LocalExpansions local)
 {
   choose_share(comm);
+  if (local == LocalExpansions::kept)
+  {
+    if (part != Part::near)
+      far_passes(local);
+    return evaluate(comm, {.part = part, .recipient = recipient});
+  }
+  start_values();
   if (part != Part::near)
-    far_passes();
-  evaluate(comm, {.part = part, .recipient = recipient});
+    far_passes(local);
+  if (part != Part::far)
+    add_near_of_share(1);
+  if (recipient == Recipient::every_rank)
+    gather(comm);
 }
 
 void MultipoleSum::compute_again(MPI_Comm comm)
 {
   passes->swap_local();
-  far_passes();
+  far_passes(LocalExpansions::kept);
   evaluate(comm, {});
 }
 
 void MultipoleSum::compute_earlier()
 {
   passes->swap_local();
-  far_passes();
+  far_passes(LocalExpansions::kept);
   passes->swap_local();
 }
 
 void MultipoleSum::evaluate(MPI_Comm comm, const KeptExpansions &use)
 {
-  for (std::vector<double> &v : values)
-    v.assign(tree.point_order().size(), 0.0);
-  leaf_seconds.assign(own_leaves().size(), 0.0);
-  const std::size_t stride = use.stride, first = (first_leaf + stride - 1) / stride * stride;
-  const auto on_leaves = [&](double &phase, auto &&add)
-  {
-    const Stopwatch watch(phase);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t k = first; k < last_leaf; k += stride)
-      if (tree.boxes()[leaves[k]].n_points() > 0)
-      {
-        const bool is_measured = (k - first_leaf) % WorkCosts::stride_of_leaves == 0;
-        const double start = is_measured ? thread_seconds() : 0.0;
-        add(leaves[k]);
-        if (is_measured)
-          leaf_seconds[k - first_leaf] += thread_seconds() - start;
-      }
-  };
+  start_values();
   if (use.part != Part::near)
-    on_leaves(seconds.points, [&](const std::size_t leaf) { add_far_of(leaf, use.ahead); });
+  {
+    if (!passes->has_local())
+      throw std::logic_error("MultipoleSum: no local expansions have been kept");
+    const Stopwatch watch(seconds.points);
+    for_each_leaf_of_share(use.stride, [&](std::size_t, const std::size_t leaf) { add_kept_of(leaf, use.ahead); });
+  }
   if (use.part != Part::far)
-    on_leaves(seconds.near, [&](const std::size_t leaf) { add_near(leaf); });
+    add_near_of_share(use.stride);
   if (use.recipient == Recipient::every_rank)
     gather(comm);
 }
@@ -259,6 +290,20 @@ std::span<const std::uint32_t> MultipoleSum::points_with_values(const Recipient 
     return all.first(0);
   const std::size_t begin = tree.boxes()[own_leaves().front()].points_begin;
   return all.subspan(begin, tree.boxes()[own_leaves().back()].points_end - begin);
+}
+
+void MultipoleSum::add_near_of_share(const std::size_t stride)
+{
+  const Stopwatch watch(seconds.near);
+  for_each_leaf_of_share(stride,
+                         [this](const std::size_t k, const std::size_t leaf)
+                         {
+                           const bool is_measured = k % WorkCosts::stride_of_leaves == 0;
+                           const double start = is_measured ? thread_seconds() : 0.0;
+                           add_near(leaf);
+                           if (is_measured)
+                             leaf_seconds[k] = thread_seconds() - start;
+                         });
 }
 
 void MultipoleSum::gather(MPI_Comm comm)

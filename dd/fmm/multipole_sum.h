@@ -56,6 +56,13 @@ enum class Recipient : std::uint8_t
   owner ///< the one that computes them; elsewhere they are zero
 };
 
+/// What becomes of the local expansions.
+enum class LocalExpansions : std::uint8_t
+{
+  used_once, ///< each given up when the field at its points is known
+  kept       ///< for evaluations after move(): some 250 bytes more for each segment (docs/benchmarks.md)
+};
+
 /// How the local expansions of an earlier time are used.
 struct KeptExpansions
 {
@@ -88,6 +95,8 @@ public:
   std::size_t n_leaves() const { return leaves.size(); }
   /// Points of every @p stride -th leaf, in the order given.
   std::vector<std::size_t> points_of_leaves(std::size_t stride) const;
+  /// In the order given, nm.
+  std::vector<Vec3> points() const;
 
   /// First point of each rank in the tree's order, and one past the last: what compute() has divided.
   std::vector<std::size_t> point_shares() const;
@@ -110,7 +119,8 @@ protected:
                std::span<const Vec3> points, double smallest_box, std::size_t n_values, int n_antiderivatives = 0);
 
   /// Collective: every rank of @p comm computes a share of about equal cost.
-  void compute(MPI_Comm comm, Part part, Recipient recipient = Recipient::every_rank);
+  void compute(MPI_Comm comm, Part part, Recipient recipient = Recipient::every_rank,
+               LocalExpansions local = LocalExpansions::used_once);
   /// Puts other sources and points into the boxes, see Octree::move(); local expansions stay those of the last compute().
   void move(std::span<const SourceExtent> sources, std::span<const std::uint32_t> box_of_source,
             std::span<const Vec3> points, std::span<const std::uint32_t> leaf_of_point);
@@ -118,10 +128,11 @@ protected:
   void compute_again(MPI_Comm comm);
   /// Makes the earlier local expansions those of the moments as they are now. Collective.
   void compute_earlier();
-  /// Evaluates the local expansions of the last compute() and what acts directly. Collective, with the shares of that time.
+  /// Evaluates the local expansions that the last compute() has kept and what acts directly. Collective, with the shares of that
+  /// time. @throws std::logic_error if none are kept.
   void evaluate(MPI_Comm comm, const KeptExpansions &use);
-  /// Values at the points in the order given.
-  template <class Value> std::vector<Value> in_given_order(const Recipient recipient = Recipient::every_rank) const
+  /// Values at the points in the order given; they are kept nowhere else.
+  template <class Value> std::vector<Value> take_in_given_order(const Recipient recipient = Recipient::every_rank)
   {
     const std::span<const std::uint32_t> order = points_with_values(recipient);
     const auto first = static_cast<std::size_t>(order.data() - tree.point_order().data());
@@ -130,6 +141,8 @@ protected:
     for (std::size_t k = 0; k < order.size(); ++k)
       for (std::size_t c = 0; c < values.size(); ++c)
         result[order[k]][static_cast<Eigen::Index>(c)] = values[c][first + k];
+    for (std::vector<double> &v : values)
+      v = {};
     return result;
   }
   double tolerance() const
@@ -169,9 +182,12 @@ private:
 
   void choose_share(MPI_Comm comm);
   LeafWork work(std::size_t leaf) const;
-  void far_passes();
+  void far_passes(LocalExpansions local);
   void place_points(std::span<const Vec3> points);
-  void add_far_of(std::size_t leaf, double ahead);
+  void start_values();
+  void add_kept_of(std::size_t leaf, double ahead);
+  void add_near_of_share(std::size_t stride);
+  template <class Add> void for_each_leaf_of_share(std::size_t stride, Add &&add);
   void gather(MPI_Comm comm);
 
   MultipoleSettings settings;

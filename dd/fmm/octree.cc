@@ -94,40 +94,42 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
       }
   for (int level = 0; level <= deepest_level; ++level)
     edges_of_level.emplace_back(std::ldexp(1.0, -level) * grid.edges);
-  sort_into_roots(sources, points);
-  Neighbours neighbours(all.size());
-  pair_roots(neighbours);
+  const Contents contents{sources, points};
+  sort_into_roots(contents);
+  LevelPairs level = pair_roots();
   while (level_begin.back() > level_begin[level_begin.size() - 2])
   {
     const std::size_t begin = level_begin[level_begin.size() - 2], end = level_begin.back();
     for (std::size_t i = begin; i < end; ++i)
-      if (all[i].level < deepest_level && is_worth_dividing(i, neighbours[i - begin]))
-        divide(i);
+      if (all[i].level < deepest_level && is_worth_dividing(i, level.neighbours[i - begin]))
+        divide(i, contents);
     level_begin.push_back(static_cast<std::uint32_t>(all.size()));
-    near.resize(all.size());
-    far.resize(all.size());
-    Neighbours next(all.size() - end);
-#pragma omp parallel for schedule(dynamic, 8)
+    count_contents();
+#pragma omp parallel for schedule(dynamic, 64)
     for (std::size_t i = begin; i < end; ++i)
-      pair_children(i, neighbours[i - begin], next);
-    neighbours = std::move(next);
+      link_neighbours(i, level);
+    near.append(level.near);
+    adjacent.append(level.neighbours);
+    n_far.insert(n_far.end(), level.n_far.begin(), level.n_far.end());
+    LevelPairs children(end, all.size() - end);
+#pragma omp parallel for schedule(dynamic, 64)
+    for (std::size_t i = end; i < all.size(); ++i)
+      for_each_pair(i, [&](const Neighbour &source) { pair(i, source, children); });
+    level = std::move(children);
   }
   level_begin.pop_back(); // the last level is empty
-  place_spheres();
+  place_spheres(sources);
   for (const Box &box : all)
-  {
     centres.push_back(centre(box));
-    had_points.push_back(box.n_points() > 0 ? 1 : 0);
-  }
   measure_overhang();
 }
 
-void Octree::place_spheres()
+void Octree::place_spheres(const std::span<const SourceExtent> sources)
 {
   spheres = {};
   spheres.reserve(line_at.size());
   for (const std::uint32_t i : line_at)
-    spheres.add(line_middle[i], 0.5 * line_length[i]);
+    spheres.add(sources[i].middle, 0.5 * sources[i].length);
 }
 
 void Octree::measure_overhang()
@@ -155,16 +157,9 @@ int Octree::root_at(const Vec3 &x) const
   return k;
 }
 
-void Octree::sort_into_roots(const std::span<const SourceExtent> sources, const std::span<const Vec3> points)
+void Octree::sort_into_roots(const Contents &contents)
 {
-  line_middle.reserve(sources.size());
-  line_length.reserve(sources.size());
-  for (const SourceExtent &s : sources)
-  {
-    line_middle.push_back(s.middle);
-    line_length.push_back(s.length);
-  }
-  point.assign(points.begin(), points.end());
+  const auto &[sources, points] = contents;
   line_at.resize(sources.size());
   point_at.resize(points.size());
   std::iota(line_at.begin(), line_at.end(), 0U);
@@ -172,9 +167,9 @@ void Octree::sort_into_roots(const std::span<const SourceExtent> sources, const 
   const int volume = grid.n[0] * grid.n[1] * grid.n[2];
   const auto n_roots = static_cast<std::size_t>(volume);
   const auto line_limits = sort_by_key(line_at, 0, static_cast<std::uint32_t>(sources.size()), n_roots,
-                                       [&](std::uint32_t i) { return root_at(line_middle[i]); });
+                                       [&](std::uint32_t i) { return root_at(contents.sources[i].middle); });
   const auto point_limits = sort_by_key(point_at, 0, static_cast<std::uint32_t>(points.size()), n_roots,
-                                        [&](std::uint32_t i) { return root_at(point[i]); });
+                                        [&](std::uint32_t i) { return root_at(contents.points[i]); });
   for (std::size_t k = 0; k < n_roots; ++k)
   {
     const int i = static_cast<int>(k);
@@ -187,25 +182,51 @@ void Octree::sort_into_roots(const std::span<const SourceExtent> sources, const 
     all.push_back(box);
   }
   level_begin = {0, static_cast<std::uint32_t>(all.size())};
-  near.resize(all.size());
-  far.resize(all.size());
+  count_contents();
 }
 
-void Octree::pair_roots(Neighbours &neighbours)
+void Octree::count_contents()
 {
+  for (std::size_t i = made_with.size(); i < all.size(); ++i)
+    made_with.push_back({all[i].n_points(), all[i].n_lines()});
+}
+
+Octree::LevelPairs Octree::pair_roots() const
+{
+  LevelPairs roots(0, all.size());
   for (std::size_t target = 0; target < all.size(); ++target)
-    for (std::size_t image = 0; image < shifts.size(); ++image)
-      for (std::size_t source = 0; source < all.size(); ++source)
+    for_each_pair(target, [&](const Neighbour &source) { pair(target, source, roots); });
+  return roots;
+}
+
+/// Calls visit(source) for every box of the level whose parent is a neighbour of that of @p target.
+template <class Visit> void Octree::for_each_pair(const std::size_t target, Visit &&visit) const
+{
+  const Box &a = all[target];
+  if (a.level > 0)
+  {
+    for (const Neighbour &n : adjacent.of(a.parent))
+      for (std::uint32_t j = 0; j < all[n.box].n_children; ++j)
       {
-        Neighbour link{static_cast<std::uint32_t>(source), {}, static_cast<std::uint8_t>(image)};
+        Neighbour link{all[n.box].first_child + j, {}, n.image};
         for (std::size_t c = 0; c < 3; ++c)
-        {
-          const auto axis = static_cast<int>(c);
-          const auto shift = static_cast<int>(std::lround(shifts[image][axis] / grid.edges[axis]));
-          link.offset[c] = static_cast<std::int16_t>(all[source].place[c] + shift - all[target].place[c]);
-        }
-        pair(target, link, neighbours);
+          link.offset[c] = static_cast<std::int16_t>(2 * n.offset[c] + (all[link.box].place[c] & 1) - (a.place[c] & 1));
+        visit(link);
       }
+    return;
+  }
+  for (std::size_t image = 0; image < shifts.size(); ++image)
+    for (std::uint32_t source = 0; source < level_begin[1]; ++source)
+    {
+      Neighbour link{source, {}, static_cast<std::uint8_t>(image)};
+      for (std::size_t c = 0; c < 3; ++c)
+      {
+        const auto axis = static_cast<int>(c);
+        const auto shift = static_cast<int>(std::lround(shifts[image][axis] / grid.edges[axis]));
+        link.offset[c] = static_cast<std::int16_t>(all[source].place[c] + shift - a.place[c]);
+      }
+      visit(link);
+    }
 }
 
 double Octree::translation_cost(const std::array<std::int16_t, 3> &offset) const
@@ -232,17 +253,20 @@ bool Octree::is_worth_dividing(const std::size_t box, const std::vector<Neighbou
   return work > 2 * 64 * settings.translation_cost[8] * static_cast<double>(neighbours.size());
 }
 
-void Octree::divide(const std::size_t index)
+void Octree::divide(const std::size_t index, const Contents &contents)
 {
   Box box = all[index];
   const Vec3 middle = centre(box);
   const double longest = settings.longest_line * size(box) / 2;
   // Key 0: lines too long for the children, held here.
-  const auto lines =
-      sort_by_key(line_at, box.lines_begin, box.lines_end, 9,
-                  [&](std::uint32_t i) { return line_length[i] > longest ? 0 : 1 + octant(line_middle[i], middle); });
+  const auto lines = sort_by_key(line_at, box.lines_begin, box.lines_end, 9,
+                                 [&](const std::uint32_t i)
+                                 {
+                                   const SourceExtent &s = contents.sources[i];
+                                   return s.length > longest ? 0 : 1 + octant(s.middle, middle);
+                                 });
   const auto points = sort_by_key(point_at, box.points_begin, box.points_end, 8,
-                                  [&](std::uint32_t i) { return octant(point[i], middle); });
+                                  [&](std::uint32_t i) { return octant(contents.points[i], middle); });
   box.own_lines_end = lines[1];
   box.first_child = static_cast<std::uint32_t>(all.size());
   for (std::size_t k = 0; k < 8; ++k)
@@ -265,42 +289,59 @@ void Octree::divide(const std::size_t index)
   all[index] = box;
 }
 
-void Octree::pair(const std::size_t target, const Neighbour &source, Neighbours &neighbours)
+Octree::PairKind Octree::kind_of(const std::size_t target, const Neighbour &source) const
 {
-  const Box &a = all[target], &b = all[source.box];
   const auto &d = source.offset;
   if (std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}) <= 1)
-    neighbours[target - level_begin[level_begin.size() - 2]].push_back(source);
-  else if (a.n_points() == 0 || b.n_lines() == 0)
-    return;
-  else if (settings.depth == 0 && static_cast<double>(a.n_points() * b.n_lines()) < translation_cost(d))
-    near[target].push_back({source.box, source.image, false});
-  else
-    far[target].push_back({source.box, d});
+    return PairKind::neighbours;
+  const std::size_t n_points = made_with[target].n_points, n_lines = made_with[source.box].n_lines;
+  if (n_points == 0 || n_lines == 0)
+    return PairKind::none;
+  if (settings.depth == 0 && static_cast<double>(n_points * n_lines) < translation_cost(d))
+    return PairKind::direct;
+  return PairKind::far;
 }
 
-void Octree::pair_children(const std::size_t box, const std::vector<Neighbour> &of_parent, Neighbours &neighbours)
+void Octree::pair(const std::size_t target, const Neighbour &source, LevelPairs &level) const
+{
+  const std::size_t i = target - level.first_box;
+  switch (kind_of(target, source))
+  {
+    case PairKind::none: break;
+    case PairKind::neighbours: level.neighbours[i].push_back(source); break;
+    case PairKind::direct: level.near[i].push_back({source.box, source.image, false}); break;
+    case PairKind::far: ++level.n_far[i];
+  }
+}
+
+/// Direct work of neighbours of which one is not divided, or holds lines itself. Gives up the neighbours of leaves.
+void Octree::link_neighbours(const std::size_t box, LevelPairs &level) const
 {
   const Box &a = all[box];
-  for (const Neighbour &n : of_parent)
+  const std::size_t i = box - level.first_box;
+  for (const Neighbour &n : level.neighbours[i])
   {
     const Box &b = all[n.box];
     const bool both = !a.is_leaf() && !b.is_leaf();
     if (a.n_points() > 0 && (both ? b.own_lines_end : b.lines_end) > b.lines_begin)
-      near[box].push_back({n.box, n.image, both});
-    if (!both)
-      continue;
-    for (std::uint32_t i = 0; i < a.n_children; ++i)
-      for (std::uint32_t j = 0; j < b.n_children; ++j)
-      {
-        const std::uint32_t target = a.first_child + i;
-        Neighbour link{b.first_child + j, {}, n.image};
-        for (std::size_t c = 0; c < 3; ++c)
-          link.offset[c] =
-              static_cast<std::int16_t>(2 * n.offset[c] + (all[link.box].place[c] & 1) - (all[target].place[c] & 1));
-        pair(target, link, neighbours);
-      }
+      level.near[i].push_back({n.box, n.image, both});
   }
+  if (a.is_leaf())
+    level.neighbours[i] = {};
+}
+
+std::vector<FarLink> Octree::far_links(const std::size_t box) const
+{
+  std::vector<FarLink> links;
+  links.reserve(n_far[box]);
+  if (n_far[box] > 0)
+    for_each_pair(box,
+                  [&](const Neighbour &source)
+                  {
+                    if (kind_of(box, source) == PairKind::far)
+                      links.push_back({source.box, source.offset});
+                  });
+  return links;
 }
 
 Vec3 Octree::centre(const Box &box) const

@@ -83,6 +83,29 @@ private:
   void find(const Vec3 &centre, double reach, std::size_t begin, std::size_t n, std::uint8_t *near) const;
 };
 
+/// Links of all boxes, one after the other.
+template <class Link> class LinkLists
+{
+public:
+  std::span<const Link> of(const std::size_t box) const
+  {
+    return {links.data() + first[box], first[box + 1] - first[box]};
+  }
+  /// Adds those of the next boxes.
+  void append(const std::vector<std::vector<Link>> &of_boxes)
+  {
+    for (const std::vector<Link> &l : of_boxes)
+      first.push_back(first.back() + l.size());
+    links.reserve(first.back());
+    for (const std::vector<Link> &l : of_boxes)
+      links.insert(links.end(), l.begin(), l.end());
+  }
+
+private:
+  std::vector<std::size_t> first{0};
+  std::vector<Link> links;
+};
+
 /// What decides how far boxes are divided and which pairs use expansions.
 struct TreeSettings
 {
@@ -103,7 +126,7 @@ public:
   /// Puts other sources and points into the boxes, whose division and links stay: each source into a box that held some itself when
   /// the tree was made, @p box_of_line, each point into a leaf that had some.
   void move(std::span<const SourceExtent> sources, std::span<const std::uint32_t> box_of_line,
-            std::span<const Vec3> points, std::span<const std::uint32_t> leaf_of_point);
+            std::span<const std::uint32_t> leaf_of_point);
   /// Box that holds each line itself, in the order given.
   std::vector<std::uint32_t> boxes_of_lines() const;
   /// Leaf of a point, or the nearest one on the way to it that had points when the tree was made.
@@ -115,8 +138,10 @@ public:
   const std::vector<Box> &boxes() const { return all; }
   /// First box of each level, and one past the last box.
   const std::vector<std::uint32_t> &levels() const { return level_begin; }
-  const std::vector<NearLink> &near_links(std::size_t box) const { return near[box]; }
-  const std::vector<FarLink> &far_links(std::size_t box) const { return far[box]; }
+  std::span<const NearLink> near_links(std::size_t box) const { return near.of(box); }
+  /// Computed from the neighbours of the parent: kept, they would be most of the tree's memory.
+  std::vector<FarLink> far_links(std::size_t box) const;
+  std::size_t n_far_links(std::size_t box) const { return n_far[box]; }
 
   /// Position in the tree's order -> index in what the constructor was given.
   const std::vector<std::uint32_t> &line_order() const { return line_at; }
@@ -150,17 +175,46 @@ private:
     std::array<std::int16_t, 3> offset;
     std::uint8_t image;
   };
-  using Neighbours = std::vector<std::vector<Neighbour>>;
+  /// Pairs of the boxes of one level.
+  struct LevelPairs
+  {
+    std::size_t first_box;
+    std::vector<std::vector<Neighbour>> neighbours;
+    std::vector<std::vector<NearLink>> near;
+    std::vector<std::uint32_t> n_far;
+
+    LevelPairs(std::size_t first, std::size_t n) : first_box(first), neighbours(n), near(n), n_far(n, 0) {}
+  };
+  /// How two boxes of one level act on each other.
+  enum class PairKind : std::uint8_t
+  {
+    none,
+    neighbours,
+    direct,
+    far
+  };
+  struct Counts
+  {
+    std::size_t n_points, n_lines;
+  };
+  struct Contents
+  {
+    std::span<const SourceExtent> sources;
+    std::span<const Vec3> points;
+  };
 
   int root_at(const Vec3 &x) const;
-  void sort_into_roots(std::span<const SourceExtent> sources, std::span<const Vec3> points);
-  void pair_roots(Neighbours &neighbours);
+  void sort_into_roots(const Contents &contents);
+  LevelPairs pair_roots() const;
   bool is_worth_dividing(std::size_t box, const std::vector<Neighbour> &neighbours) const;
-  void divide(std::size_t box);
-  void pair_children(std::size_t box, const std::vector<Neighbour> &of_parent, Neighbours &neighbours);
-  void pair(std::size_t target, const Neighbour &source, Neighbours &neighbours);
+  void divide(std::size_t box, const Contents &contents);
+  void count_contents();
+  template <class Visit> void for_each_pair(std::size_t target, Visit &&visit) const;
+  PairKind kind_of(std::size_t target, const Neighbour &source) const;
+  void link_neighbours(std::size_t box, LevelPairs &level) const;
+  void pair(std::size_t target, const Neighbour &source, LevelPairs &level) const;
   double translation_cost(const std::array<std::int16_t, 3> &offset) const;
-  void place_spheres();
+  void place_spheres(std::span<const SourceExtent> sources);
   void number_contents(std::size_t box, std::span<const std::uint32_t> own_lines,
                        std::span<const std::uint32_t> own_points, std::uint32_t &next_line, std::uint32_t &next_point);
   void measure_overhang();
@@ -170,16 +224,15 @@ private:
   std::vector<Vec3> edges_of_level; ///< nm
   std::vector<Box> all;
   std::vector<std::uint32_t> level_begin;
-  std::vector<std::vector<NearLink>> near;
-  std::vector<std::vector<FarLink>> far;
+  LinkLists<NearLink> near;
+  LinkLists<Neighbour> adjacent; ///< of boxes with children
+  std::vector<std::uint32_t> n_far;
   std::vector<std::uint32_t> line_at, point_at;
-  std::vector<Vec3> line_middle, point; ///< as given
-  std::vector<double> line_length;      ///< as given
   std::vector<Vec3> shifts;
   LineSpheres spheres;
-  std::vector<Vec3> centres;            ///< of the boxes, nm
-  std::vector<double> overhang;         ///< how far the lines of a box and of its children reach out of it, nm
-  std::vector<std::uint8_t> had_points; ///< when the tree was made
+  std::vector<Vec3> centres;     ///< of the boxes, nm
+  std::vector<double> overhang;  ///< how far the lines of a box and of its children reach out of it, nm
+  std::vector<Counts> made_with; ///< contents of the boxes when the tree was made
 };
 
 template <class Visit>
@@ -209,7 +262,7 @@ template <class Visit> void Octree::for_each_near_link(const std::size_t leaf, V
 {
   for (std::size_t i = leaf;; i = all[i].parent)
   {
-    for (const NearLink &link : near[i])
+    for (const NearLink &link : near.of(i))
     {
       const Box &source = all[link.box];
       visit(link, source.lines_begin, link.own_only ? source.own_lines_end : source.lines_end);

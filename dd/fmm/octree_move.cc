@@ -28,16 +28,8 @@ std::vector<std::uint32_t> order_of(const std::span<const std::uint32_t> box_of,
 } // namespace
 
 void Octree::move(const std::span<const SourceExtent> sources, const std::span<const std::uint32_t> box_of_line,
-                  const std::span<const Vec3> points, const std::span<const std::uint32_t> leaf_of_point)
+                  const std::span<const std::uint32_t> leaf_of_point)
 {
-  line_middle.clear();
-  line_length.clear();
-  for (const SourceExtent &s : sources)
-  {
-    line_middle.push_back(s.middle);
-    line_length.push_back(s.length);
-  }
-  point.assign(points.begin(), points.end());
   const auto own_lines = count(box_of_line, all.size()), own_points = count(leaf_of_point, all.size());
   std::uint32_t next_line = 0, next_point = 0;
   for (std::size_t root = 0; root < level_begin[1]; ++root)
@@ -50,7 +42,7 @@ void Octree::move(const std::span<const SourceExtent> sources, const std::span<c
   }
   line_at = order_of(box_of_line, std::move(first_line));
   point_at = order_of(leaf_of_point, std::move(first_point));
-  place_spheres();
+  place_spheres(sources);
   measure_overhang();
 }
 
@@ -86,7 +78,7 @@ std::uint32_t Octree::leaf_at(const Vec3 &x) const
     std::uint32_t best = begin;
     double distance = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = begin; i < end; ++i)
-      if (const double d = distance_outside(i, x); had_points[i] != 0 && d < distance)
+      if (const double d = distance_outside(i, x); made_with[i].n_points > 0 && d < distance)
       {
         best = i;
         distance = d;
@@ -94,7 +86,7 @@ std::uint32_t Octree::leaf_at(const Vec3 &x) const
     return best;
   };
   auto box = static_cast<std::uint32_t>(root_at(x));
-  if (had_points[box] == 0)
+  if (made_with[box].n_points == 0)
     box = nearest(0, level_begin[1]);
   while (!all[box].is_leaf())
   {
@@ -104,7 +96,7 @@ std::uint32_t Octree::leaf_at(const Vec3 &x) const
     for (std::size_t c = 0; c < 3; ++c)
       place[c] = 2 * all[box].place[c] + (x[static_cast<int>(c)] >= centres[box][static_cast<int>(c)] ? 1 : 0);
     std::uint32_t child = begin;
-    while (child < end && (all[child].place != place || had_points[child] == 0))
+    while (child < end && (all[child].place != place || made_with[child].n_points == 0))
       ++child;
     box = child < end ? child : nearest(begin, end);
   }

@@ -1,6 +1,8 @@
 // Processor time of phases. Internal to dd/fmm.
 #pragma once
 
+#include "dd/common/thread_seconds.h"
+
 #include <ctime>
 
 namespace ddfem::fmm
@@ -17,5 +19,19 @@ public:
 private:
   double &phase;
   std::clock_t start = std::clock();
+};
+
+/// The same of the thread that measures.
+class ThreadStopwatch
+{
+public:
+  explicit ThreadStopwatch(double &phase_) : phase(phase_) {}
+  ThreadStopwatch(const ThreadStopwatch &) = delete;
+  ThreadStopwatch &operator=(const ThreadStopwatch &) = delete;
+  ~ThreadStopwatch() { phase += thread_seconds() - start; }
+
+private:
+  double &phase;
+  double start = thread_seconds();
 };
 } // namespace ddfem::fmm

@@ -26,10 +26,11 @@ constexpr double negligible_jump = 0.05;
 /// Leaves in which errors are measured: a sixteenth, but some in small trees.
 constexpr std::size_t largest_stride = 16, fewest_leaves = 32;
 
-FarFieldCache::Field fresh(const FieldRequest &r, const fmm::Part part)
+FarFieldCache::Field fresh(const FieldRequest &r, const fmm::Part part,
+                           const fmm::LocalExpansions local = fmm::LocalExpansions::used_once)
 {
   auto field = std::make_shared<MultipoleField>(r.system, r.points, r.settings);
-  std::vector<SymTensor> stress = field->stress(r.comm, part, fmm::Recipient::owner);
+  std::vector<SymTensor> stress = field->stress(r.comm, part, fmm::Recipient::owner, local);
   return {std::move(field), std::move(stress)};
 }
 
@@ -174,8 +175,9 @@ FarFieldCache::Field FarFieldCache::refresh_in_new_tree(const FieldRequest &requ
 {
   ++n.trees;
   const std::unique_ptr<Kept> before = std::move(kept);
-  Field result = fresh(request, fmm::Part::all);
-  if (!request.system.rays().empty() || settings.mode == FarFieldRefresh::every_evaluation)
+  const bool keeps = request.system.rays().empty() && settings.mode != FarFieldRefresh::every_evaluation;
+  Field result = fresh(request, fmm::Part::all, keeps ? fmm::LocalExpansions::kept : fmm::LocalExpansions::used_once);
+  if (!keeps)
     return result;
   const std::vector<fmm::LineSource> lines = line_sources(request.system);
   kept = std::make_unique<Kept>(Kept{result.field,

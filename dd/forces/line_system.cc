@@ -15,14 +15,13 @@ LineSystem::LineSystem(const IsotropicMedium &medium_, const Network &network, c
     : elastic_medium(medium_), shifts{Vec3::Zero()}, periodic_cell(cell_), images(images_)
 {
   straight_lines.reserve(network.n_segments());
-  segments.reserve(network.n_segments());
   for (const SegmentIndex s : network.segments())
   {
     Vec3 start = network.position(network.start(s));
     const Vec3 t = network.direction(s);
     if (periodic_cell)
       start += periodic_cell->shift_into_cell(start + 0.5 * t);
-    add_line(start, start + t, network.burgers(s));
+    straight_lines.push_back({start, start + t, network.burgers(s)});
   }
   if (shape)
     for (const VirtualRay &r : virtual_rays(network, *shape, rule))
@@ -41,15 +40,22 @@ LineSystem::LineSystem(const IsotropicMedium &medium_, const Network &network, c
 void LineSystem::close(const OpenLines &open)
 {
   for (const StraightLine &l : open.lines)
-    add_line(l.start, l.end, -l.burgers);
+    straight_lines.push_back({l.start, l.end, -l.burgers});
+  segments = std::make_shared<SegmentTable>();
   for (const VirtualRay &r : open.rays)
     add_ray({r.origin, r.direction, -r.burgers});
 }
 
-void LineSystem::add_line(const Vec3 &start, const Vec3 &end, const Vec3 &burgers)
+const LineTable &LineSystem::segment_table() const
 {
-  straight_lines.push_back({start, end, burgers});
-  segments.add_segment(start, end, burgers);
+  std::call_once(segments->is_made,
+                 [this]
+                 {
+                   segments->table.reserve(straight_lines.size());
+                   for (const StraightLine &l : straight_lines)
+                     segments->table.add_segment(l.start, l.end, l.burgers);
+                 });
+  return segments->table;
 }
 
 void LineSystem::add_ray(const VirtualRay &ray)
@@ -93,7 +99,7 @@ void LineSystem::add_stress(const std::span<const Vec3> points, const std::span<
   {
     for (std::size_t i = 0; i < points.size(); ++i)
       buffer.set_point(i, in_cell(points[i]) - shift);
-    add_segment_stress(elastic_medium, segments, buffer.batch());
+    add_segment_stress(elastic_medium, segment_table(), buffer.batch());
   }
   for (std::size_t i = 0; i < points.size(); ++i)
     buffer.set_point(i, in_cell(points[i]));

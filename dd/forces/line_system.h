@@ -9,7 +9,8 @@
 #include "dd/geometry/periodic_cell.h"
 #include "dd/network/network.h"
 
-#include <optional>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -31,8 +32,9 @@ public:
   /// In the order of Network::segments(), followed by what close() has added.
   const std::vector<StraightLine> &lines() const { return straight_lines; }
   const std::vector<VirtualRay> &rays() const { return virtual_ray_list; }
-  /// lines() and rays() as the vectorised kernels read them.
-  const LineTable &segment_table() const { return segments; }
+  /// lines() as the vectorised kernels read them, made by the first call. Safe to call from any thread.
+  const LineTable &segment_table() const;
+  /// rays() likewise.
   const LineTable &ray_table() const { return rays_in_table; }
   /// Shifts of the near images (zero first); a single zero without periodicity.
   const std::vector<Vec3> &image_shifts() const { return shifts; }
@@ -52,15 +54,23 @@ public:
   double distance(const Vec3 &x) const;
 
 private:
-  void add_line(const Vec3 &start, const Vec3 &end, const Vec3 &burgers);
   void add_ray(const VirtualRay &ray);
   /// Adds the stress at the points, in one thread.
   void add_stress(std::span<const Vec3> points, std::span<SymTensor> values) const;
 
+  /// Sums by multipoles do without it, and it is larger than the lines.
+  struct SegmentTable
+  {
+    std::once_flag is_made;
+    LineTable table;
+  };
+
   IsotropicMedium elastic_medium;
   std::vector<StraightLine> straight_lines;
   std::vector<VirtualRay> virtual_ray_list;
-  LineTable segments, rays_in_table;
+  std::shared_ptr<SegmentTable> segments =
+      std::make_shared<SegmentTable>(); ///< shared by copies, which have the same lines
+  LineTable rays_in_table;
   std::vector<Vec3> shifts;
   const PeriodicCell *periodic_cell;
   const PeriodicImages *images;

@@ -4,6 +4,7 @@
 #include "dd/forces/frozen_lines.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace ddfem
 {
@@ -38,31 +39,33 @@ MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const 
   std::vector<RaySource> rays;
   for (const VirtualRay &r : system->rays())
     rays.push_back({r.origin, r.direction, r.burgers});
-  take(points_);
+  std::vector<Vec3> in_cell(points_.begin(), points_.end());
+  for (Vec3 &x : in_cell)
+    x += system->shift_into_cell(x);
   const PeriodicCell *const cell = system->cell();
   const std::vector<fmm::SourceExtent> extents = fmm::extents_of(lines);
   const double lines_per_leaf =
-      fmm::best_lines_per_leaf(settings, static_cast<double>(std::max<std::size_t>(points.size(), 1)) /
+      fmm::best_lines_per_leaf(settings, static_cast<double>(std::max<std::size_t>(in_cell.size(), 1)) /
                                              static_cast<double>(std::max<std::size_t>(lines.size(), 1)));
   const fmm::RootGrid grid = cell ? fmm::periodic_grid(cell->origin, cell->lengths, extents, lines_per_leaf)
-                                  : fmm::enclosing_grid(extents, rays, points, lines_per_leaf);
+                                  : fmm::enclosing_grid(extents, rays, in_cell, lines_per_leaf);
   const auto distant = fmm::cut_rays(rays, grid, mean_length(system->lines()), lines);
-  expansions = std::make_unique<fmm::MultipoleStress>(system->medium(), settings, grid, lines, distant, points);
+  expansions = std::make_unique<fmm::MultipoleStress>(system->medium(), settings, grid, lines, distant, in_cell);
+  keep(std::move(in_cell));
 }
 
-std::vector<SymTensor> MultipoleField::stress(MPI_Comm comm, const fmm::Part part, const fmm::Recipient recipient)
+std::vector<SymTensor> MultipoleField::stress(MPI_Comm comm, const fmm::Part part, const fmm::Recipient recipient,
+                                              const fmm::LocalExpansions local)
 {
-  std::vector<SymTensor> values = expansions->stress(comm, part, recipient);
+  std::vector<SymTensor> values = expansions->stress(comm, part, recipient, local);
   if (part != fmm::Part::near)
     add_distant_images(values, recipient);
   return values;
 }
 
-void MultipoleField::take(const std::span<const Vec3> given)
+void MultipoleField::keep(std::vector<Vec3> given)
 {
-  points.assign(given.begin(), given.end());
-  for (Vec3 &x : points)
-    x += system->shift_into_cell(x);
+  points = system->far_images() ? std::move(given) : std::vector<Vec3>();
 }
 
 void MultipoleField::add_distant_images(std::vector<SymTensor> &values, const fmm::Recipient recipient) const
@@ -84,8 +87,8 @@ void MultipoleField::move(const LineSystem &now, const std::span<const Vec3> poi
                           const std::span<const std::uint32_t> leaf_of_point)
 {
   system = &now;
-  points.assign(points_now.begin(), points_now.end());
-  expansions->move(lines.lines, lines.box, points, leaf_of_point);
+  keep({points_now.begin(), points_now.end()});
+  expansions->move(lines.lines, lines.box, points_now, leaf_of_point);
 }
 
 std::vector<SymTensor> MultipoleField::stress_with_kept_far_field(MPI_Comm comm, const double ahead,
@@ -106,10 +109,6 @@ std::vector<SymTensor> MultipoleField::stress_with_new_far_field(MPI_Comm comm)
 
 void MultipoleField::set_earlier(const std::vector<fmm::LineSource> &lines)
 {
-  std::vector<fmm::LineSource> in_order;
-  in_order.reserve(lines.size());
-  for (const std::uint32_t i : expansions->octree().line_order())
-    in_order.push_back(lines[i]);
-  expansions->set_earlier(std::move(in_order));
+  expansions->set_earlier(lines);
 }
 } // namespace ddfem

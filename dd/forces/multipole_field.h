@@ -54,7 +54,8 @@ public:
   /// As LineSystem::stress(): infinite-body stress at the points, MPa, periodic images included; those beyond the 26
   /// neighbours belong to the far part. Collective; the values do not depend on the number of ranks and threads.
   std::vector<SymTensor> stress(MPI_Comm comm, fmm::Part part = fmm::Part::all,
-                                fmm::Recipient recipient = fmm::Recipient::every_rank);
+                                fmm::Recipient recipient = fmm::Recipient::every_rank,
+                                fmm::LocalExpansions local = fmm::LocalExpansions::used_once);
 
   /// Puts lines and points of another time into the boxes, see fmm::MultipoleStress::move(). @p lines: those of @p now in
   /// its order, then others; @p points_now: the images that lie in the boxes. For systems without rays.
@@ -73,14 +74,14 @@ public:
   fmm::MultipoleStress &sum() { return *expansions; }
   const fmm::MultipoleStress &sum() const { return *expansions; }
   /// The points, in a periodic cell wrapped into it.
-  const std::vector<Vec3> &at() const { return points; }
+  std::vector<Vec3> at() const { return expansions->points(); }
 
 private:
-  void take(std::span<const Vec3> given);
+  void keep(std::vector<Vec3> given);
   void add_distant_images(std::vector<SymTensor> &values, fmm::Recipient recipient) const;
 
   const LineSystem *system;
-  std::vector<Vec3> points; ///< wrapped into the periodic cell
+  std::vector<Vec3> points; ///< wrapped into the periodic cell; only with images beyond the neighbours
   std::unique_ptr<fmm::MultipoleStress> expansions;
 };
 } // namespace ddfem

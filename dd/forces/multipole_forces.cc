@@ -228,7 +228,7 @@ void MultipoleForces::find_near_sources(const std::size_t i, const Vec3 &start, 
   around.lines.for_each(middle, reach,
                         [&](const std::uint32_t k, const std::size_t image)
                         {
-                          const fmm::LineSource &source = sum.lines()[k];
+                          const fmm::LineSource source = sum.line(k);
                           const Vec3 &shift = tree.image_shifts()[image];
                           const double squared =
                               distance_point_segment(middle, source.start + shift, source.end + shift).squared;

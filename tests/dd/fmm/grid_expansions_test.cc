@@ -104,13 +104,15 @@ public:
     if (system.cell())
       for (Vec3 &x : points)
         x += system.cell()->shift_into_cell(x);
+    for (std::size_t k = 0; k < field.sum().table().size(); ++k)
+      lines.push_back(field.sum().line(k));
   }
 
   const Octree &tree() const { return field.sum().octree(); }
   std::vector<SymTensor> by_harmonics(const Part part) { return field.sum().stress(MPI_COMM_SELF, part); }
   std::vector<SymTensor> by_grids(const int n, const bool far_only = true) const
   {
-    return grid_stress(system.medium(), n, tree(), field.sum().lines(), points, far_only);
+    return grid_stress(system.medium(), n, tree(), lines, points, far_only);
   }
   /// Far stress at points number 0, stride, ... by the closed form.
   std::vector<SymTensor> direct(std::size_t stride) const;
@@ -120,6 +122,7 @@ public:
 
 private:
   MultipoleField field;
+  std::vector<LineSource> lines; ///< in the tree's order
 };
 
 std::vector<SymTensor> FarField::direct(const std::size_t stride) const
@@ -144,7 +147,7 @@ std::vector<SymTensor> FarField::direct(const std::size_t stride) const
         const Vec3 x = points[p] - (boxes.centre(target) + between - boxes.centre(source)); // of the image
         for (std::uint32_t k = source.lines_begin; k < source.lines_end; ++k)
         {
-          const LineSource &l = field.sum().lines()[k];
+          const LineSource &l = lines[k];
           stress.back() += segment_stress(system.medium(), x, l.start, l.end, l.burgers);
         }
       }

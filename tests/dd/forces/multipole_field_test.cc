@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <stdexcept>
 
 namespace ddfem
 {
@@ -105,6 +106,37 @@ TEST(MultipoleField, DoesNotDependOnTheNumberOfThreads)
   omp_set_num_threads(2);
   EXPECT_TRUE(values[0] == values[1]);
   EXPECT_TRUE(values[0] == values[2]);
+}
+
+TEST(MultipoleField, IsTheSameWithLocalExpansionsKeptAndUsedOnce)
+{
+  const SampleLines lines = clustered_loops(60);
+  const LineSystem system = lines.system();
+  const auto points = points_among(system, 2000);
+  for (const double tolerance : {1e-3, 1e-6}) // expansions in single and double precision
+  {
+    MultipoleField field(system, points, {tolerance});
+    const auto used_once = field.stress(MPI_COMM_SELF);
+    EXPECT_THROW(field.stress_with_kept_far_field(MPI_COMM_SELF, 0), std::logic_error);
+    const auto kept =
+        field.stress(MPI_COMM_SELF, fmm::Part::all, fmm::Recipient::every_rank, fmm::LocalExpansions::kept);
+    EXPECT_TRUE(kept == used_once);
+    EXPECT_TRUE(field.stress_with_kept_far_field(MPI_COMM_SELF, 0) == used_once);
+  }
+}
+
+TEST(LineSystem, TableHasTheLinesThatCloseIt)
+{
+  const SampleLines lines = clustered_loops(2);
+  LineSystem system = lines.system();
+  const LineSystem before = system;
+  EXPECT_EQ(system.segment_table().size(), system.lines().size());
+  OpenLines open;
+  open.lines.push_back({Vec3::Zero(), Vec3(1, 2, 3), Vec3(0, 0, 0.25)});
+  system.close(open);
+  ASSERT_EQ(system.segment_table().size(), before.lines().size() + 1);
+  EXPECT_EQ(system.segment_table().vector(before.lines().size(), LineTable::burgers), Vec3(0, 0, -0.25));
+  EXPECT_EQ(before.segment_table().size(), before.lines().size());
 }
 
 TEST(MultipoleField, OfAPeriodicCellIsTheDirectSum)
