@@ -26,9 +26,9 @@ const IsotropicMedium medium{50e3, 0.34, 0.3};
 
 enum Column : std::uint8_t
 {
-  wall,    ///< of compute_nodal_forces()
-  system_, ///< LineSystem
-  tree,    ///< what remains
+  wall,  ///< of compute_nodal_forces()
+  lines, ///< LineSystem
+  tree,  ///< what remains
   upward,
   translations, ///< with downward
   points,
@@ -55,7 +55,7 @@ Row phases(const Network &network, const fmm::MultipoleSettings &settings, const
   MPI_Barrier(MPI_COMM_WORLD);
   const double start = seconds();
   const LineSystem system(medium, network, nullptr, RayDirection::normal, nullptr, nullptr);
-  row[system_] = seconds() - start;
+  row[lines] = seconds() - start;
   const MultipoleForces forces(system, settings, pair_tolerance, MPI_COMM_WORLD);
   const fmm::PhaseTimes &t = forces.field().sum().times();
   row[upward] = t.upward;
@@ -67,7 +67,7 @@ Row phases(const Network &network, const fmm::MultipoleSettings &settings, const
   row[waiting] = t.waiting + forces.spent().waiting;
   row[moments_sent] = static_cast<double>(forces.field().sum().n_bytes_sent());
   row[stresses_sent] = static_cast<double>(forces.spent().n_stresses_sent * sizeof(SymTensor));
-  row[tree] = seconds() - start - row[system_] - row[divided] - row[waiting];
+  row[tree] = seconds() - start - row[lines] - row[divided] - row[waiting];
   return row;
 }
 

@@ -33,10 +33,9 @@ IndexRange owned_range(const std::size_t n, MPI_Comm comm)
 std::vector<std::size_t> owned_ranges(const std::size_t n, MPI_Comm comm)
 {
   const Rank rank = rank_of(comm);
-  std::vector<std::size_t> begin;
+  std::vector<std::size_t> begin(static_cast<std::size_t>(rank.n) + 1, n);
   for (int r = 0; r < rank.n; ++r)
-    begin.push_back(part_of(n, r, rank.n).begin);
-  begin.push_back(n);
+    begin[static_cast<std::size_t>(r)] = part_of(n, r, rank.n).begin;
   return begin;
 }
 
