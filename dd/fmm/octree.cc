@@ -104,6 +104,7 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
   {
     centres.push_back(centre(box));
     had_points.push_back(box.n_points() > 0 ? 1 : 0);
+    had_lines.push_back(box.own_lines_end > box.lines_begin ? 1 : 0);
   }
   drift.assign(level_begin.size(), 0.0);
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -100,6 +101,8 @@ public:
   std::vector<std::uint32_t> boxes_of_lines() const;
   /// Leaf of a point, or the nearest one on the way to it that had points when the tree was made.
   std::uint32_t leaf_at(const Vec3 &x) const;
+  /// Smallest box around @p middle (nm) that takes a line of @p length (nm) and held some itself when the tree was made.
+  std::optional<std::uint32_t> box_for_line(const Vec3 &middle, double length) const;
   /// nm; 0 inside.
   double distance_outside(std::size_t box, const Vec3 &x) const;
 
@@ -172,6 +175,7 @@ private:
   std::vector<Vec3> centres;            ///< of the boxes, nm
   double longest_of_all = 0;            ///< line, nm
   std::vector<std::uint8_t> had_points; ///< when the tree was made
+  std::vector<std::uint8_t> had_lines;  ///< when the tree was made, of its own
   std::vector<double> drift; ///< by level: how much farther lines of its boxes and their children reach than then, nm
 };
 

@@ -1,9 +1,9 @@
 #include "dd/forces/multipole_field.h"
 
 #include "dd/fmm/grids_and_rays.h"
-#include "dd/forces/frozen_lines.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace ddfem
 {
@@ -40,10 +40,16 @@ MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const 
     rays.push_back({r.origin, r.direction, r.burgers});
   take(points_);
   const PeriodicCell *const cell = system->cell();
-  const fmm::RootGrid grid = cell ? fmm::periodic_grid(cell->origin, cell->lengths)
-                                  : fmm::enclosing_grid(fmm::extents_of(lines), rays, points);
-  const auto distant = fmm::cut_rays(rays, grid, mean_length(system->lines()), lines);
-  expansions = std::make_unique<fmm::MultipoleStress>(system->medium(), settings, grid, lines, distant, points);
+  cuts.grid = cell ? fmm::periodic_grid(cell->origin, cell->lengths)
+                   : fmm::enclosing_grid(fmm::extents_of(lines), rays, points);
+  cuts.shortest = mean_length(system->lines());
+  std::vector<RaySource> distant;
+  for (const RaySource &r : rays)
+  {
+    cuts.ways.push_back(fmm::cuts_of(r, cuts.grid, cuts.shortest));
+    distant.push_back(fmm::cut_ray(r, cuts.ways.back(), lines));
+  }
+  expansions = std::make_unique<fmm::MultipoleStress>(system->medium(), settings, cuts.grid, lines, distant, points);
 }
 
 std::vector<SymTensor> MultipoleField::stress(MPI_Comm comm, const fmm::Part part)
@@ -75,12 +81,12 @@ SymTensor MultipoleField::stress_of_distant_images(const std::size_t i) const
   return system->far_images() ? system->far_images()->far_stress(points[i]) : SymTensor(SymTensor::Zero());
 }
 
-void MultipoleField::move(const LineSystem &now, const std::span<const Vec3> points_now, const LinesInBoxes &lines,
+void MultipoleField::move(const LineSystem &now, const std::span<const Vec3> points_now, const LinesInBoxes &sources,
                           const std::span<const std::uint32_t> leaf_of_point)
 {
   system = &now;
   points.assign(points_now.begin(), points_now.end());
-  expansions->move(lines.lines, lines.box, points, leaf_of_point);
+  expansions->move(sources.sources(), points, leaf_of_point);
 }
 
 std::vector<SymTensor> MultipoleField::stress_with_kept_far_field(MPI_Comm comm, const double ahead)
@@ -97,12 +103,12 @@ std::vector<SymTensor> MultipoleField::stress_with_new_far_field(MPI_Comm comm)
   return values;
 }
 
-void MultipoleField::set_earlier(const std::vector<fmm::LineSource> &lines)
+void MultipoleField::set_earlier(const std::vector<fmm::LineSource> &lines, std::vector<RaySource> distant_rays)
 {
   std::vector<fmm::LineSource> in_order;
   in_order.reserve(lines.size());
   for (const std::uint32_t i : expansions->octree().line_order())
     in_order.push_back(lines[i]);
-  expansions->set_earlier(std::move(in_order));
+  expansions->set_earlier(std::move(in_order), std::move(distant_rays));
 }
 } // namespace ddfem
