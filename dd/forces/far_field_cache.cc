@@ -288,7 +288,8 @@ void FarFieldCache::learn(const FieldRequest &request, const Sample &before, con
   }
   error = scale > 0 ? std::sqrt(difference / scale) : 0.0;
   displacement = before.displacement;
-  largest = std::max(largest, error);
+  if (settings.mode == FarFieldRefresh::every_n_steps || displacement <= allowed_displacement(request))
+    largest = std::max(largest, error);
   growth.learn(tolerated_error(request), error, displacement);
 }
 } // namespace ddfem

@@ -77,7 +77,7 @@ public:
     unsigned without = 0; ///< far field computed, but not kept
   };
   const Counts &counts() const { return n; }
-  /// Largest error measured so far, see measured_error().
+  /// Largest error measured so far of a far field that could be used still.
   double largest_error() const { return largest; }
   /// Error of the kept far field when it was last measured, relative to its rms, and the displacement then, nm.
   double measured_error() const { return error; }
