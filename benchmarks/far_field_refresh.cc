@@ -76,7 +76,7 @@ void evaluate(Case &c, const fmm::MultipoleSettings &settings, const double pair
 {
   const double start = seconds();
   const LineSystem system(c.medium, c.moving.network, nullptr, RayDirection::normal, c.cell ? &*c.cell : nullptr,
-                          c.images.get());
+                          c.images.get(), run.cache ? ImageSources::set_by_user : ImageSources::set_at_once);
   const MultipoleForces forces = run.cache ? MultipoleForces(system, settings, pair_tolerance, MPI_COMM_SELF,
                                                              *run.cache, c.moving.network, c.images.get())
                                            : MultipoleForces(system, settings, pair_tolerance, MPI_COMM_SELF);

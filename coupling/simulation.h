@@ -99,6 +99,7 @@ private:
   void report(RunOutput &output, const IntegratorStep &step, bool last);
   std::string status_line(const IntegratorStep &step) const;
   std::string energy_line() const;
+  std::string far_field_line() const;
   std::string images_line() const;
 
   Parameters parameters;

@@ -116,6 +116,8 @@ void Simulation::report(RunOutput &output, const IntegratorStep &step, const boo
                ", surface exits " + std::to_string(counts.surface_exits) + ", segments halved " +
                std::to_string(counts.refinements) + ", nodes removed " + std::to_string(counts.coarsenings));
     output.log(energy_line());
+    if (far_field.counts().refreshed > 0)
+      output.log(far_field_line());
     if (update)
       output.log("elastic solves " + std::to_string(update->counts().solves) + ", steps without " +
                  std::to_string(update->counts().skips));
@@ -129,6 +131,16 @@ std::string Simulation::energy_line() const
   std::ostringstream out;
   out << std::setprecision(5) << "work " << e.work / units::joule << " J = stored " << e.stored / units::joule
       << " J + dissipated " << e.dissipated / units::joule << " J + mismatch " << e.mismatch() / units::joule << " J";
+  return out.str();
+}
+
+std::string Simulation::far_field_line() const
+{
+  const FarFieldCache::Counts &n = far_field.counts();
+  std::ostringstream out;
+  out << "far field refreshed " << n.refreshed << " times, in " << n.trees << " trees; evaluations with the kept one "
+      << n.kept << ", with one of their own " << n.without << "; largest error measured " << std::setprecision(2)
+      << far_field.largest_error() << " of it";
   return out.str();
 }
 

@@ -55,27 +55,25 @@ RootGrid periodic_grid(const Vec3 &origin, const Vec3 &lengths, const std::span<
   return lines_per_leaf > 0 ? fit_to_leaves(grid, sources, lines_per_leaf, false) : grid;
 }
 
-std::vector<RaySource> cut_rays(const std::span<const RaySource> rays, const RootGrid &grid, const double shortest,
-                                std::vector<LineSource> &lines)
+std::vector<double> cuts_of(const RaySource &ray, const RootGrid &grid, const double shortest)
 {
-  std::vector<RaySource> distant;
-  for (const RaySource &r : rays)
+  double way = std::numeric_limits<double>::infinity(); // to the boundary of the root
+  for (int c = 0; c < 3; ++c)
   {
-    double way = std::numeric_limits<double>::infinity(); // to the boundary of the root
-    for (int c = 0; c < 3; ++c)
-    {
-      const double wall = grid.origin[c] + (r.direction[c] > 0 ? grid.edges[c] : 0.0);
-      if (r.direction[c] != 0.0)
-        way = std::min(way, (wall - r.origin[c]) / r.direction[c]);
-    }
-    for (double t = 0; t < way;)
-    {
-      const double next = std::min(way, t + std::max(shortest, 0.25 * t));
-      lines.push_back({r.origin + t * r.direction, r.origin + next * r.direction, r.burgers});
-      t = next;
-    }
-    distant.push_back({r.origin + way * r.direction, r.direction, r.burgers});
+    const double wall = grid.origin[c] + (ray.direction[c] > 0 ? grid.edges[c] : 0.0);
+    if (ray.direction[c] != 0.0)
+      way = std::min(way, (wall - ray.origin[c]) / ray.direction[c]);
   }
-  return distant;
+  std::vector<double> cuts{0.0};
+  while (cuts.back() < way)
+    cuts.push_back(std::min(way, cuts.back() + std::max(shortest, 0.25 * cuts.back())));
+  return cuts;
+}
+
+RaySource cut_ray(const RaySource &ray, const std::span<const double> cuts, std::vector<LineSource> &lines)
+{
+  for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
+    lines.push_back({ray.origin + cuts[k] * ray.direction, ray.origin + cuts[k + 1] * ray.direction, ray.burgers});
+  return {ray.origin + cuts.back() * ray.direction, ray.direction, ray.burgers};
 }
 } // namespace ddfem::fmm

@@ -12,10 +12,12 @@ namespace ddfem::fmm
 /// of a root that is four times as wide as the body (see cut_rays()).
 inline constexpr int level_of_distant_rays = 3;
 
-/// Replaces @p rays by segments within @p grid, appended to @p lines, and what is left of each beyond it. Pieces have at least the
-/// length @p shortest (nm) and at most a quarter of the way from the origin of the ray: far pieces have no near points.
-std::vector<RaySource> cut_rays(std::span<const RaySource> rays, const RootGrid &grid, double shortest,
-                                std::vector<LineSource> &lines);
+/// Where @p ray is cut into segments, as ways from its origin, nm: from 0 to where it leaves @p grid. Pieces have at least the
+/// length @p shortest (nm) and at most a quarter of the way from the origin: far pieces have no near points.
+std::vector<double> cuts_of(const RaySource &ray, const RootGrid &grid, double shortest);
+
+/// Appends the segments of a ray between @p cuts to @p lines; returns what is left beyond the last one.
+RaySource cut_ray(const RaySource &ray, std::span<const double> cuts, std::vector<LineSource> &lines);
 
 /// Root grid of a periodic cell from @p origin with edges @p lengths (nm): boxes that are nearly cubes, and that halved have about
 /// @p lines_per_leaf of the sources (0: of any number), see fit_to_leaves().

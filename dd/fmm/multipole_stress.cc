@@ -49,17 +49,50 @@ private:
   double distance; ///< nm
   double low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
 };
+
+/// Boxes whose lines act directly on the points of a leaf.
+class DirectBoxes
+{
+public:
+  DirectBoxes(const Octree &tree_, const std::size_t leaf) : tree(tree_), linked(tree.boxes().size(), none)
+  {
+    tree.for_each_near_link(leaf, [&](const NearLink &link, std::uint32_t, std::uint32_t)
+                            { linked[link.box] = std::max(linked[link.box], link.own_only ? own : all); });
+  }
+
+  /// Whether @p box does with the lines that it holds itself.
+  bool hold_lines_of(std::uint32_t box) const
+  {
+    if (linked[box] != none)
+      return true;
+    while (tree.boxes()[box].level > 0)
+    {
+      box = tree.boxes()[box].parent;
+      if (linked[box] == all)
+        return true;
+    }
+    return false;
+  }
+
+private:
+  enum Link : std::uint8_t
+  {
+    none,
+    own,
+    all
+  };
+  const Octree &tree;
+  std::vector<Link> linked;
+};
 } // namespace
 
 MultipoleStress::MultipoleStress(const IsotropicMedium &medium_, const MultipoleSettings &given, const RootGrid &grid,
                                  const std::span<const LineSource> lines, const std::span<const RaySource> distant_rays,
                                  const std::span<const Vec3> points)
-    : MultipoleSum(given, grid, extents_of(lines), points, smallest_box(medium_.a, given.tolerance), 6),
-      medium(medium_), rays(distant_rays.begin(), distant_rays.end())
+    : MultipoleSum(given, grid, extents_of(lines), points, smallest_box(medium_.a, given.tolerance), 6), medium(medium_)
 {
   line_table = in_order_of_tree(lines);
-  for (const RaySource &r : rays)
-    ray_table.add_ray(r.origin, r.direction, r.burgers);
+  take_rays(distant_rays);
 }
 
 LineTable MultipoleStress::in_order_of_tree(const std::span<const LineSource> lines) const
@@ -71,11 +104,29 @@ LineTable MultipoleStress::in_order_of_tree(const std::span<const LineSource> li
   return table;
 }
 
-void MultipoleStress::move(const std::span<const LineSource> lines, const std::span<const std::uint32_t> box_of_line,
-                           const std::span<const Vec3> points, const std::span<const std::uint32_t> leaf_of_point)
+void MultipoleStress::take_rays(const std::span<const RaySource> distant_rays)
 {
-  MultipoleSum::move(extents_of(lines), box_of_line, points, leaf_of_point);
-  line_table = in_order_of_tree(lines);
+  rays.assign(distant_rays.begin(), distant_rays.end());
+  ray_table = {};
+  for (const RaySource &r : rays)
+    ray_table.add_ray(r.origin, r.direction, r.burgers);
+}
+
+void MultipoleStress::move(const MovedSources &moved, const std::span<const Vec3> points,
+                           const std::span<const std::uint32_t> leaf_of_point)
+{
+  MultipoleSum::move(extents_of(moved.lines), moved.box_of_line, points, leaf_of_point);
+  line_table = in_order_of_tree(moved.lines);
+  take_rays(moved.distant_rays);
+  corrections = ray_corrections = {};
+  box_of_correction.clear();
+  for (const PlacedLine &c : moved.corrections)
+  {
+    corrections.add_segment(c.line.start, c.line.end, c.line.burgers);
+    box_of_correction.push_back(c.box);
+  }
+  for (const RaySource &r : moved.ray_corrections)
+    ray_corrections.add_ray(r.origin, r.direction, r.burgers);
 }
 
 void MultipoleStress::add_own_moments(const Box &box, const ExpansionView &moments) const
@@ -126,8 +177,19 @@ void MultipoleStress::add_near(const std::size_t leaf)
       add_near_lines(lines.near, lines.distant, box,
                      image == 0 ? batch : ShiftedBatch(batch, -boxes.image_shifts()[image]).batch,
                      boxes.image_shifts()[image]);
-  if (box.level < level_of_distant_rays)
-    add_ray_stress(medium, ray_table, batch);
+  add_ray_stress(medium, box.level < level_of_distant_rays ? ray_table : ray_corrections, batch);
+  if (corrections.size() > 0)
+    add_corrections(leaf, batch);
+}
+
+void MultipoleStress::add_corrections(const std::size_t leaf, const StressBatch &batch) const
+{
+  const DirectBoxes direct(octree(), leaf);
+  std::vector<unsigned> distant;
+  for (unsigned i = 0; i < corrections.size(); ++i)
+    if (!direct.hold_lines_of(box_of_correction[i]))
+      distant.push_back(i);
+  add_segment_stress(medium, corrections, distant, batch);
 }
 
 void MultipoleStress::add_near_lines(const std::span<const unsigned> near, const std::span<const unsigned> distant,
@@ -159,11 +221,13 @@ std::vector<SymTensor> MultipoleStress::stress_with_new_far_field(MPI_Comm comm)
   return take_in_given_order<SymTensor>();
 }
 
-void MultipoleStress::set_earlier(const std::span<const LineSource> lines)
+void MultipoleStress::set_earlier(const std::span<const LineSource> lines, std::vector<RaySource> distant_rays)
 {
   LineTable earlier = in_order_of_tree(lines);
   std::swap(line_table, earlier);
+  rays.swap(distant_rays);
   compute_earlier();
   std::swap(line_table, earlier);
+  rays.swap(distant_rays);
 }
 } // namespace ddfem::fmm

@@ -120,7 +120,10 @@ Octree::Octree(const RootGrid &grid_, const std::span<const SourceExtent> source
   level_begin.pop_back(); // the last level is empty
   place_spheres(sources);
   for (const Box &box : all)
+  {
     centres.push_back(centre(box));
+    had_lines.push_back(box.own_lines_end > box.lines_begin ? 1 : 0);
+  }
   measure_overhang();
 }
 

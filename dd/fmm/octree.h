@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -131,6 +132,8 @@ public:
   std::vector<std::uint32_t> boxes_of_lines() const;
   /// Leaf of a point, or the nearest one on the way to it that had points when the tree was made.
   std::uint32_t leaf_at(const Vec3 &x) const;
+  /// Smallest box around @p middle (nm) that takes a line of @p length (nm) and held some itself when the tree was made.
+  std::optional<std::uint32_t> box_for_line(const Vec3 &middle, double length) const;
   /// nm; 0 inside.
   double distance_outside(std::size_t box, const Vec3 &x) const;
 
@@ -230,9 +233,10 @@ private:
   std::vector<std::uint32_t> line_at, point_at;
   std::vector<Vec3> shifts;
   LineSpheres spheres;
-  std::vector<Vec3> centres;     ///< of the boxes, nm
-  std::vector<double> overhang;  ///< how far the lines of a box and of its children reach out of it, nm
-  std::vector<Counts> made_with; ///< contents of the boxes when the tree was made
+  std::vector<Vec3> centres;           ///< of the boxes, nm
+  std::vector<double> overhang;        ///< how far the lines of a box and of its children reach out of it, nm
+  std::vector<Counts> made_with;       ///< contents of the boxes when the tree was made
+  std::vector<std::uint8_t> had_lines; ///< of its own, when the tree was made
 };
 
 template <class Visit>

@@ -103,6 +103,26 @@ std::uint32_t Octree::leaf_at(const Vec3 &x) const
   return box;
 }
 
+std::optional<std::uint32_t> Octree::box_for_line(const Vec3 &middle, const double length) const
+{
+  std::optional<std::uint32_t> smallest;
+  auto box = static_cast<std::uint32_t>(root_at(middle));
+  while (distance_outside(box, middle) == 0 &&
+         (all[box].level == 0 || length <= settings.longest_line * size(all[box])))
+  {
+    if (had_lines[box] != 0)
+      smallest = box;
+    const std::uint32_t begin = all[box].first_child, end = begin + all[box].n_children;
+    std::uint32_t child = begin;
+    while (child < end && distance_outside(child, middle) > 0)
+      ++child;
+    if (child == end)
+      break;
+    box = child;
+  }
+  return smallest;
+}
+
 double Octree::distance_outside(const std::size_t box, const Vec3 &x) const
 {
   const Vec3 half = 0.5 * edges(all[box]);

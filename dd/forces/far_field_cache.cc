@@ -26,14 +26,6 @@ constexpr double negligible_jump = 0.05;
 /// Leaves in which errors are measured: a sixteenth, but some in small trees.
 constexpr std::size_t largest_stride = 16, fewest_leaves = 32;
 
-FarFieldCache::Field fresh(const FieldRequest &r, const fmm::Part part,
-                           const fmm::LocalExpansions local = fmm::LocalExpansions::used_once)
-{
-  auto field = std::make_shared<MultipoleField>(r.system, r.points, r.settings);
-  std::vector<SymTensor> stress = field->stress(r.comm, part, fmm::Recipient::owner, local);
-  return {std::move(field), std::move(stress)};
-}
-
 /// Finds the leaf of a point. @p x: moved to the image that is near one, where it has left the cell. Returns whether it is.
 bool place_point(const fmm::Octree &tree, Vec3 &x, std::uint32_t &leaf)
 {
@@ -49,16 +41,44 @@ bool place_point(const fmm::Octree &tree, Vec3 &x, std::uint32_t &leaf)
   return false;
 }
 
-/// Images of the lines beyond the neighbours, for the images of lines that act in the tree.
+fmm::RaySource source_of(const VirtualRay &r)
+{
+  return {r.origin, r.direction, r.burgers};
+}
+
+/// Makes lines the sources of the images beyond the neighbours.
 void set_images(const FieldRequest &r, const std::vector<fmm::LineSource> &lines)
 {
+  if (!r.images)
+    return;
   std::vector<LineElement> elements;
   elements.reserve(lines.size());
   for (const fmm::LineSource &l : lines)
     elements.push_back({l.start, l.end, l.burgers});
   r.images->set_sources(r.system.medium(), elements);
 }
+
+PeriodicImages::Coefficients field_of_images(const FieldRequest &r)
+{
+  return r.images ? r.images->far_field() : PeriodicImages::Coefficients();
+}
+
+FarFieldCache::Field fresh(const FieldRequest &r, const fmm::Part part,
+                           const fmm::LocalExpansions local = fmm::LocalExpansions::used_once)
+{
+  if (part != fmm::Part::near)
+    set_images(r, line_sources(r.system));
+  auto field = std::make_shared<MultipoleField>(r.system, r.points, r.settings);
+  std::vector<SymTensor> stress = field->stress(r.comm, part, fmm::Recipient::owner, local);
+  return {std::move(field), std::move(stress)};
+}
 } // namespace
+
+void FarFieldCache::forget()
+{
+  kept.reset();
+  growth = {};
+}
 
 FarFieldCache::Field FarFieldCache::evaluate(const FieldRequest &request)
 {
@@ -81,7 +101,7 @@ FarFieldCache::Field FarFieldCache::evaluate(const FieldRequest &request)
 
 std::optional<FarFieldCache::Placement> FarFieldCache::place(const FieldRequest &request) const
 {
-  if (!kept || settings.mode == FarFieldRefresh::every_evaluation || !request.system.rays().empty())
+  if (!kept || settings.mode == FarFieldRefresh::every_evaluation)
     return {};
   const fmm::Octree &tree = kept->field->sum().octree();
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -167,25 +187,38 @@ bool FarFieldCache::tree_is_good(const std::optional<Placement> &placement, cons
 FarFieldCache::Field FarFieldCache::refresh(const FieldRequest &request, std::optional<Placement> placement)
 {
   ++n.refreshed;
-  return tree_is_good(placement, request.system.lines().size()) ? refresh_in_same_tree(request, std::move(*placement))
-                                                                : refresh_in_new_tree(request);
+  std::optional<Sample> before;
+  if (placement)
+    before = sample(request, *placement);
+  Field result = tree_is_good(placement, request.system.lines().size())
+                     ? refresh_in_same_tree(request, std::move(*placement))
+                     : refresh_in_new_tree(request);
+  if (before)
+    learn(request, *before, result.stress);
+  return result;
 }
 
 FarFieldCache::Field FarFieldCache::refresh_in_new_tree(const FieldRequest &request)
 {
   ++n.trees;
   const std::unique_ptr<Kept> before = std::move(kept);
-  const bool keeps = request.system.rays().empty() && settings.mode != FarFieldRefresh::every_evaluation;
+  const bool keeps = settings.mode != FarFieldRefresh::every_evaluation;
   Field result = fresh(request, fmm::Part::all, keeps ? fmm::LocalExpansions::kept : fmm::LocalExpansions::used_once);
   if (!keeps)
     return result;
-  const std::vector<fmm::LineSource> lines = line_sources(request.system);
+  const MultipoleField &field = *result.field;
+  std::vector<fmm::LineSource> sources = line_sources(request.system);
+  const std::size_t n_lines = sources.size();
+  for (std::size_t i = 0; i < request.system.rays().size(); ++i)
+    fmm::cut_ray(source_of(request.system.rays()[i]), field.cut_rays().ways[i], sources);
   kept = std::make_unique<Kept>(Kept{result.field,
-                                     {request.network, lines, result.field->sum().octree().boxes_of_lines(),
-                                      before ? &before->lines : nullptr, request.system.cell()},
-                                     lines.size()});
+                                     {request.network, request.system, sources, field.sum().octree().boxes_of_lines(),
+                                      field.cut_rays(), before ? &before->lines : nullptr},
+                                     n_lines,
+                                     field_of_images(request),
+                                     {}});
   if (before && settings.mode == FarFieldRefresh::adaptive)
-    result.field->set_earlier(kept->lines.earlier(request.network, lines));
+    set_earlier(request);
   else
     kept->lines.forget_motion();
   return result;
@@ -193,41 +226,73 @@ FarFieldCache::Field FarFieldCache::refresh_in_new_tree(const FieldRequest &requ
 
 FarFieldCache::Field FarFieldCache::refresh_in_same_tree(const FieldRequest &request, Placement placement)
 {
-  MultipoleField &field = *kept->field;
-  const std::size_t stride = std::clamp<std::size_t>(field.sum().n_leaves() / fewest_leaves, 1, largest_stride);
-  move(request, placement);
-  displacement = displacement_of(placement);
-  const std::vector<std::size_t> sample = field.sum().points_of_leaves(stride);
-  const auto in_sample = [&](const fmm::Part part) {
-    return field.sum().stress_with_kept_far_field(request.comm, {placement.lines.ahead, stride, part});
-  };
-  const std::vector<SymTensor> far = in_sample(fmm::Part::far), close = in_sample(fmm::Part::near);
-
-  const bool has_jumped = placement.lines.has_corrections(request.system.lines().size()) ||
-                          placement.lines.jump > negligible_jump * allowed_displacement(request);
-  placement.lines.drop_corrections(request.system.lines().size());
-  FrozenLines lines(request.network, placement.lines.lines, placement.lines.box, &kept->lines, request.system.cell());
-  move(request, placement);
-  std::vector<SymTensor> stress = field.stress_with_new_far_field(request.comm);
-  double difference = 0, scale = 0;
-  for (const std::size_t i : sample)
-  {
-    difference += (far[i] + close[i] + field.stress_of_distant_images(i) - stress[i]).squaredNorm();
-    scale += far[i].squaredNorm();
-  }
-  error = scale > 0 ? std::sqrt(difference / scale) : 0.0;
-  growth.learn(tolerated_error(request), error, displacement);
+  LinesInBoxes &now = placement.lines;
+  const bool has_jumped = now.has_corrections() || now.jump > negligible_jump * allowed_displacement(request);
+  now.drop_corrections();
+  FrozenLines lines(request.network, request.system, now.lines, now.box, now.cuts, &kept->lines);
+  kept->field->move(request.system, placement.points, now, placement.leaf_of_point);
+  set_images(request, now.lines);
+  std::vector<SymTensor> stress = kept->field->stress_with_new_far_field(request.comm);
+  kept = std::make_unique<Kept>(
+      Kept{kept->field, std::move(lines), kept->n_lines, field_of_images(request), std::move(kept->images)});
   // The far field before holds other lines: without the changes of topology, motion remains.
   if (has_jumped)
-    field.set_earlier(lines.earlier(request.network, placement.lines.lines));
-  kept = std::make_unique<Kept>(Kept{kept->field, std::move(lines), kept->n_lines});
+    set_earlier(request);
   return {kept->field, std::move(stress)};
+}
+
+/// Makes the far field that is extrapolated from that of the lines before their motion.
+void FarFieldCache::set_earlier(const FieldRequest &request)
+{
+  FrozenLines::Earlier earlier = kept->lines.earlier(request.network);
+  if (request.images)
+  {
+    set_images(request, earlier.lines);
+    kept->earlier_images = request.images->far_field();
+    request.images->set_far_field(kept->images);
+  }
+  kept->field->set_earlier(earlier.lines, std::move(earlier.distant_rays));
 }
 
 void FarFieldCache::move(const FieldRequest &request, const Placement &placement)
 {
   kept->field->move(request.system, placement.points, placement.lines, placement.leaf_of_point);
-  if (request.images && !placement.lines.in_system_frame)
-    set_images(request, placement.lines.lines);
+  if (!request.images)
+    return;
+  const double ahead = placement.lines.ahead;
+  if (ahead == 0 || kept->earlier_images.size() == 0)
+    request.images->set_far_field(kept->images);
+  else
+    request.images->set_far_field((1 + ahead) * kept->images - ahead * kept->earlier_images);
+}
+
+FarFieldCache::Sample FarFieldCache::sample(const FieldRequest &request, const Placement &placement)
+{
+  MultipoleField &field = *kept->field;
+  const std::size_t stride = std::clamp<std::size_t>(field.sum().n_leaves() / fewest_leaves, 1, largest_stride);
+  move(request, placement);
+  const auto stress_of = [&](const fmm::Part part) {
+    return field.sum().stress_with_kept_far_field(request.comm, {placement.lines.ahead, stride, part});
+  };
+  Sample result{field.sum().points_of_leaves(stride), stress_of(fmm::Part::far), stress_of(fmm::Part::near),
+                displacement_of(placement)};
+  for (const std::size_t i : result.points)
+    result.all[i] += result.far[i] + field.stress_of_distant_images(i);
+  return result;
+}
+
+void FarFieldCache::learn(const FieldRequest &request, const Sample &before, const std::vector<SymTensor> &now)
+{
+  double difference = 0, scale = 0;
+  for (const std::size_t i : before.points)
+  {
+    difference += (before.all[i] - now[i]).squaredNorm();
+    scale += before.far[i].squaredNorm();
+  }
+  error = scale > 0 ? std::sqrt(difference / scale) : 0.0;
+  displacement = before.displacement;
+  if (settings.mode == FarFieldRefresh::every_n_steps || displacement <= allowed_displacement(request))
+    largest = std::max(largest, error);
+  growth.learn(tolerated_error(request), error, displacement);
 }
 } // namespace ddfem

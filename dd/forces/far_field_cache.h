@@ -31,7 +31,7 @@ struct RefreshSettings
   double share_of_tolerance = 0.5;
 };
 
-/// What compute_nodal_forces() needs the stress of, and where.
+/// What compute_nodal_forces() needs the stress of, and where. The sources of the images need not be set.
 struct FieldRequest
 {
   const LineSystem &system;
@@ -48,9 +48,8 @@ struct FieldRequest
  * use one tree as long as the lines stay near their boxes. The error grows in proportion to the displacement of the lines besides
  * that motion, by a factor that is measured at every refresh: in a sample of leaves, the stress by the kept and by
  * the new far field are compared. What is kept changes at the first evaluation after begin_step() only: others leave no trace, and equal
- * networks get equal forces within a step. An evaluation that what is kept is no longer good for does without it.
- *
- * Virtual rays are not followed: with any, the far field is computed at every evaluation.
+ * networks get equal forces within a step. An evaluation that what is kept is no longer good for does without it. Virtual rays
+ * and periodic images beyond the neighbours belong to the far field and are kept with it.
  */
 class FarFieldCache
 {
@@ -59,6 +58,9 @@ public:
 
   /// The next evaluation is at the start of a step.
   void begin_step() { at_start_of_step = true; }
+  /// What follows depends only on the networks that follow, as after the construction. For checkpoints, in the run that writes one
+  /// and in the run that reads it.
+  void forget();
 
   struct Field
   {
@@ -75,6 +77,8 @@ public:
     unsigned without = 0; ///< far field computed, but not kept
   };
   const Counts &counts() const { return n; }
+  /// Largest error measured so far of a far field that could be used still.
+  double largest_error() const { return largest; }
   /// Error of the kept far field when it was last measured, relative to its rms, and the displacement then, nm.
   double measured_error() const { return error; }
   double measured_displacement() const { return displacement; }
@@ -99,9 +103,17 @@ private:
   {
     std::shared_ptr<MultipoleField> field;
     FrozenLines lines;
-    std::size_t n_lines;      ///< when the tree was made
-    double at_last_start = 0; ///< displacement when the last step began, nm
-    unsigned n_steps = 0;     ///< since the refresh
+    std::size_t n_lines;                                 ///< when the tree was made
+    PeriodicImages::Coefficients images, earlier_images; ///< empty without
+    double at_last_start = 0;                            ///< displacement when the last step began, nm
+    unsigned n_steps = 0;                                ///< since the refresh
+  };
+  /// The kept field at some points before a refresh.
+  struct Sample
+  {
+    std::vector<std::size_t> points;
+    std::vector<SymTensor> far, all; ///< MPa, at all points; zero at others
+    double displacement;             ///< nm
   };
 
   std::optional<Placement> place(const FieldRequest &request) const;
@@ -116,12 +128,15 @@ private:
   Field refresh_in_new_tree(const FieldRequest &request);
   Field refresh_in_same_tree(const FieldRequest &request, Placement placement);
   void move(const FieldRequest &request, const Placement &placement);
+  void set_earlier(const FieldRequest &request);
+  Sample sample(const FieldRequest &request, const Placement &placement);
+  void learn(const FieldRequest &request, const Sample &before, const std::vector<SymTensor> &now);
 
   RefreshSettings settings;
   std::unique_ptr<Kept> kept;
   bool at_start_of_step = false;
   Growth growth;
-  double error = 0, displacement = 0;
+  double error = 0, displacement = 0, largest = 0;
   Counts n;
 };
 } // namespace ddfem

@@ -8,9 +8,10 @@ namespace ddfem
 {
 namespace
 {
-/// How far the middle of a line may lie outside its box, in box sizes, and in shortest edges of the periodic cell: images are
-/// exact in a margin only.
-constexpr double farthest_of_box = 0.25, farthest_of_cell = 0.05;
+/// How far the middle of a line may lie outside its box, in shortest edges of the periodic cell: images are exact in a margin only.
+constexpr double farthest_of_cell = 0.05;
+/// What is summed in closed form for all points, at most: about as much as near lines.
+constexpr std::size_t most_corrections = 256;
 /// In motions before.
 constexpr double farthest_ahead = 10;
 constexpr std::uint32_t no_box = 0xffffffffU;
@@ -29,13 +30,12 @@ Vec3 shift_towards(const PeriodicCell *const cell, const Vec3 &x, const Vec3 &re
   return cell->minimum_image(d) - d;
 }
 
-/// Whether a line with its middle at @p x is near enough to a box. @p farthest: set to the largest distance, in box sizes.
+/// Whether a line with its middle at @p x is near enough to a box.
 bool stays(const Vec3 &x, const std::uint32_t box, const PeriodicCell *const cell, const fmm::Octree &tree,
-           double &farthest)
+           LinesInBoxes &placed)
 {
-  const double outside = tree.distance_outside(box, x), size = tree.size(tree.boxes()[box]);
-  farthest = std::max(farthest, outside / size);
-  return outside <= farthest_of_box * size && (!cell || outside <= farthest_of_cell * cell->lengths.minCoeff());
+  return placed.stays(x, box, tree) &&
+         (!cell || tree.distance_outside(box, x) <= farthest_of_cell * cell->lengths.minCoeff());
 }
 
 /// Areas that all lines sweep, compared with those before. They add up at random: by the squares.
@@ -97,9 +97,9 @@ private:
 };
 } // namespace
 
-FrozenLines::FrozenLines(const Network &network, const std::span<const fmm::LineSource> lines,
-                         const std::span<const std::uint32_t> box, const FrozenLines *const before,
-                         const PeriodicCell *const cell)
+FrozenLines::FrozenLines(const Network &network, const LineSystem &system, const std::span<const fmm::LineSource> lines,
+                         const std::span<const std::uint32_t> box, const CutRays &cuts, const FrozenLines *const before)
+    : rays(system.rays(), cuts, box.subspan(network.n_segments()))
 {
   frozen.reserve(network.n_segments());
   std::vector<std::size_t> appeared;
@@ -114,7 +114,7 @@ FrozenLines::FrozenLines(const Network &network, const std::span<const fmm::Line
               Vec3::Zero()};
     if (const Line *const old = before ? before->find(network, s) : nullptr)
     {
-      const Vec3 shift = shift_towards(cell, middle(line.line), middle(old->line));
+      const Vec3 shift = shift_towards(system.cell(), middle(line.line), middle(old->line));
       line.start_motion = line.line.start + shift - old->line.start;
       line.end_motion = line.line.end + shift - old->line.end;
     }
@@ -124,15 +124,18 @@ FrozenLines::FrozenLines(const Network &network, const std::span<const fmm::Line
     ++i;
   }
   if (before)
-    join_motion(appeared);
+    join_motion(appeared, system, *before);
   std::sort(frozen.begin(), frozen.end(), [](const Line &a, const Line &b) { return a.id < b.id; });
 }
 
-/// Lines that have @p appeared move with the ends of their neighbours: with a gap between the two, the field before would have
-/// lines that end there.
-void FrozenLines::join_motion(const std::span<const std::size_t> appeared)
+/// Lines that have @p appeared, and rays, move with the ends of their neighbours: with a gap between the two, the field before
+/// would have lines that end there.
+void FrozenLines::join_motion(const std::span<const std::size_t> appeared, const LineSystem &system,
+                              const FrozenLines &before)
 {
   std::unordered_map<ObjectId, Vec3> motion_of;
+  for (const VirtualRay &r : system.rays())
+    motion_of.emplace(r.node, Vec3::Zero());
   for (const std::size_t i : appeared)
     for (const ObjectId node : {frozen[i].start_node, frozen[i].end_node})
       motion_of.emplace(node, Vec3::Zero());
@@ -151,25 +154,22 @@ void FrozenLines::join_motion(const std::span<const std::size_t> appeared)
     frozen[i].start_motion = motion_of.at(frozen[i].start_node);
     frozen[i].end_motion = motion_of.at(frozen[i].end_node);
   }
+  rays.set_motion(before.rays, motion_of);
 }
 
 void FrozenLines::forget_motion()
 {
   for (Line &line : frozen)
     line.start_motion = line.end_motion = Vec3::Zero();
+  rays.forget_motion();
 }
 
-std::vector<fmm::LineSource> FrozenLines::earlier(const Network &network,
-                                                  const std::span<const fmm::LineSource> lines) const
+FrozenLines::Earlier FrozenLines::earlier(const Network &network) const
 {
-  std::vector<fmm::LineSource> result(lines.begin(), lines.end());
-  for (std::size_t i = 0; const SegmentIndex s : network.segments())
-  {
-    const Line &line = *find(network, s);
-    result[i].start -= line.start_motion;
-    result[i].end -= line.end_motion;
-    ++i;
-  }
+  Earlier result;
+  for (const SegmentIndex s : network.segments())
+    result.lines.push_back(moved(extrapolated(*find(network, s), -1), Vec3::Zero()));
+  rays.append_earlier(result.lines, result.distant_rays);
   return result;
 }
 
@@ -204,14 +204,22 @@ std::optional<LinesInBoxes> FrozenLines::place(const Network &network, const Lin
   double squares = 0;
   if (!place_known(known, longest_jump, system, tree, placed, is_here, squares))
     return {};
+  const auto changed = rays.place(system.rays(), tree, longest_jump, placed, squares);
+  if (!changed)
+    return {};
+  placed.n_of_system = placed.lines.size();
   placed.displacement = areas.displacement(squares);
   double swept2 = 0;
   for (const Patch &p : patches(network, is_here, placed))
-    if (double swept = 0; place_patch(p, system, tree, placed, swept))
+    if (double swept = 0; !has_node_of(p, network, *changed) && place_patch(p, system, tree, placed, swept))
       swept2 += swept * swept;
+    else if (!system.cell())
+      correct_patch(p, system, tree, placed);
     else
       return {};
   placed.jump = areas.displacement(swept2);
+  if (placed.corrections.size() > most_corrections)
+    return {};
   return placed;
 }
 
@@ -243,10 +251,9 @@ bool FrozenLines::place_known(const std::vector<const Line *> &known, const doub
       const Vec3 shift = shift_towards(system.cell(), middle(l), middle(old.line));
       placed.lines[i] = moved(l, shift);
       placed.box[i] = old.box;
-      placed.in_system_frame = placed.in_system_frame && shift.isZero(0);
       is_here[static_cast<std::size_t>(&old - frozen.data())] = 1;
       squares += rest.area(old.line.end - old.line.start).squaredNorm();
-      if (!stays(middle(l) + shift, old.box, system.cell(), tree, placed.farthest))
+      if (!stays(middle(l) + shift, old.box, system.cell(), tree, placed))
         return false;
     }
   return true;
@@ -256,7 +263,7 @@ std::vector<FrozenLines::Patch> FrozenLines::patches(const Network &network, con
                                                      const LinesInBoxes &placed) const
 {
   std::vector<std::size_t> appeared;
-  for (std::size_t i = 0; i < placed.box.size(); ++i)
+  for (std::size_t i = 0; i < network.n_segments(); ++i)
     if (placed.box[i] == no_box)
       appeared.push_back(i);
   NodeGroups groups;
@@ -287,8 +294,8 @@ bool FrozenLines::fits(const Patch &patch, const Line &host, const LineSystem &s
   const auto is_near = [&](const StraightLine &l)
   {
     const Vec3 x = middle(l);
-    double farthest = 0;
-    return stays(x + shift_towards(system.cell(), x, middle(host.line)), host.box, system.cell(), tree, farthest);
+    LinesInBoxes unused;
+    return stays(x + shift_towards(system.cell(), x, middle(host.line)), host.box, system.cell(), tree, unused);
   };
   return std::all_of(patch.gone.begin(), patch.gone.end(), [&](std::size_t k) { return is_near(frozen[k].line); }) &&
          std::all_of(patch.appeared.begin(), patch.appeared.end(),
@@ -304,16 +311,12 @@ bool FrozenLines::place_patch(const Patch &patch, const LineSystem &system, cons
     return false;
   const Line &host = frozen[*found];
   const auto shift_of = [&](const StraightLine &l)
-  {
-    Vec3 shift = shift_towards(system.cell(), middle(l), middle(host.line));
-    placed.in_system_frame = placed.in_system_frame && shift.isZero(0);
-    return shift;
-  };
+  { return shift_towards(system.cell(), middle(l), middle(host.line)); };
   for (const std::size_t i : patch.appeared)
   {
     placed.lines[i] = moved(system.lines()[i], shift_of(system.lines()[i]));
     placed.box[i] = host.box;
-    stays(0.5 * (placed.lines[i].start + placed.lines[i].end), host.box, system.cell(), tree, placed.farthest);
+    placed.stays(0.5 * (placed.lines[i].start + placed.lines[i].end), host.box, tree);
   }
   for (const std::size_t k : patch.gone)
     if (const Vec3 shift = shift_of(frozen[k].line); frozen[k].box != host.box || !shift.isZero(0))
@@ -326,6 +329,34 @@ bool FrozenLines::place_patch(const Patch &patch, const LineSystem &system, cons
     }
   swept = area_swept_by(patch, host, system, placed.ahead);
   return true;
+}
+
+/// In closed form, for all points to which the patch is distant.
+void FrozenLines::correct_patch(const Patch &patch, const LineSystem &system, const fmm::Octree &tree,
+                                LinesInBoxes &placed) const
+{
+  for (const std::size_t i : patch.appeared)
+  {
+    placed.lines[i] = moved(system.lines()[i], Vec3::Zero());
+    placed.box[i] = placed.box_of_new(placed.lines[i], tree);
+  }
+  for (const std::size_t k : patch.gone)
+    placed.corrections.push_back({moved(extrapolated(frozen[k], placed.ahead), Vec3::Zero(), -1), frozen[k].box});
+}
+
+bool FrozenLines::has_node_of(const Patch &patch, const Network &network, const FrozenRays::Nodes &nodes) const
+{
+  if (nodes.empty())
+    return false;
+  const auto any = [&](const ObjectId a, const ObjectId b) { return nodes.contains(a) || nodes.contains(b); };
+  const auto is_gone = [&](std::size_t k) { return any(frozen[k].start_node, frozen[k].end_node); };
+  const auto has_appeared = [&](std::size_t i)
+  {
+    const SegmentIndex s = network.segments()[i];
+    return any(network.id(network.start(s)), network.id(network.end(s)));
+  };
+  return std::any_of(patch.gone.begin(), patch.gone.end(), is_gone) ||
+         std::any_of(patch.appeared.begin(), patch.appeared.end(), has_appeared);
 }
 
 /// Area of the loops between the lines of a patch now and where those before would be, by their moment, nm^2.

@@ -11,7 +11,8 @@
 namespace ddfem
 {
 LineSystem::LineSystem(const IsotropicMedium &medium_, const Network &network, const GrainShape *shape,
-                       const RayDirection rule, const PeriodicCell *cell_, PeriodicImages *images_)
+                       const RayDirection rule, const PeriodicCell *cell_, PeriodicImages *images_,
+                       const ImageSources sources)
     : elastic_medium(medium_), shifts{Vec3::Zero()}, periodic_cell(cell_), images(images_)
 {
   straight_lines.reserve(network.n_segments());
@@ -27,8 +28,9 @@ LineSystem::LineSystem(const IsotropicMedium &medium_, const Network &network, c
     for (const VirtualRay &r : virtual_rays(network, *shape, rule))
       add_ray(r);
   if (images_)
-  {
     shifts = images_->near_shifts();
+  if (images_ && sources == ImageSources::set_at_once)
+  {
     std::vector<LineElement> elements;
     elements.reserve(straight_lines.size());
     for (const StraightLine &l : straight_lines)

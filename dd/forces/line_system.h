@@ -9,6 +9,7 @@
 #include "dd/geometry/periodic_cell.h"
 #include "dd/network/network.h"
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -16,6 +17,13 @@
 
 namespace ddfem
 {
+/// Who makes the lines of a system the sources of its periodic images.
+enum class ImageSources : std::uint8_t
+{
+  set_at_once,
+  set_by_user ///< of the system, with PeriodicImages::set_sources(); they may stay those of another time
+};
+
 /// Snapshot of the sources of the `infinite` field. In a periodic cell `lines` are shifted so that their mid-points lie
 /// in the primary cell, and `far_images` holds the field of all images beyond the 26 neighbours.
 class LineSystem
@@ -23,7 +31,7 @@ class LineSystem
 public:
   /// @p shape: the finite grain, or null; @p images: the periodic cell's image operator, or null (it is updated).
   LineSystem(const IsotropicMedium &medium, const Network &network, const GrainShape *shape, RayDirection rule,
-             const PeriodicCell *cell, PeriodicImages *images);
+             const PeriodicCell *cell, PeriodicImages *images, ImageSources sources = ImageSources::set_at_once);
 
   /// Adds @p open with opposite Burgers vectors: the sources of the field become closed lines (see OpenLines).
   void close(const OpenLines &open);

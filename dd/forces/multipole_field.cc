@@ -1,7 +1,6 @@
 #include "dd/forces/multipole_field.h"
 
 #include "dd/fmm/grids_and_rays.h"
-#include "dd/forces/frozen_lines.h"
 
 #include <algorithm>
 #include <utility>
@@ -47,10 +46,16 @@ MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const 
   const double lines_per_leaf =
       fmm::best_lines_per_leaf(settings, static_cast<double>(std::max<std::size_t>(in_cell.size(), 1)) /
                                              static_cast<double>(std::max<std::size_t>(lines.size(), 1)));
-  const fmm::RootGrid grid = cell ? fmm::periodic_grid(cell->origin, cell->lengths, extents, lines_per_leaf)
-                                  : fmm::enclosing_grid(extents, rays, in_cell, lines_per_leaf);
-  const auto distant = fmm::cut_rays(rays, grid, mean_length(system->lines()), lines);
-  expansions = std::make_unique<fmm::MultipoleStress>(system->medium(), settings, grid, lines, distant, in_cell);
+  cuts.grid = cell ? fmm::periodic_grid(cell->origin, cell->lengths, extents, lines_per_leaf)
+                   : fmm::enclosing_grid(extents, rays, in_cell, lines_per_leaf);
+  cuts.shortest = mean_length(system->lines());
+  std::vector<RaySource> distant;
+  for (const RaySource &r : rays)
+  {
+    cuts.ways.push_back(fmm::cuts_of(r, cuts.grid, cuts.shortest));
+    distant.push_back(fmm::cut_ray(r, cuts.ways.back(), lines));
+  }
+  expansions = std::make_unique<fmm::MultipoleStress>(system->medium(), settings, cuts.grid, lines, distant, in_cell);
   keep(std::move(in_cell));
 }
 
@@ -83,12 +88,12 @@ SymTensor MultipoleField::stress_of_distant_images(const std::size_t i) const
   return system->far_images() ? system->far_images()->far_stress(points[i]) : SymTensor(SymTensor::Zero());
 }
 
-void MultipoleField::move(const LineSystem &now, const std::span<const Vec3> points_now, const LinesInBoxes &lines,
+void MultipoleField::move(const LineSystem &now, const std::span<const Vec3> points_now, const LinesInBoxes &sources,
                           const std::span<const std::uint32_t> leaf_of_point)
 {
   system = &now;
   keep({points_now.begin(), points_now.end()});
-  expansions->move(lines.lines, lines.box, points_now, leaf_of_point);
+  expansions->move(sources.sources(), points_now, leaf_of_point);
 }
 
 std::vector<SymTensor> MultipoleField::stress_with_kept_far_field(MPI_Comm comm, const double ahead,
@@ -107,8 +112,8 @@ std::vector<SymTensor> MultipoleField::stress_with_new_far_field(MPI_Comm comm)
   return values;
 }
 
-void MultipoleField::set_earlier(const std::vector<fmm::LineSource> &lines)
+void MultipoleField::set_earlier(const std::vector<fmm::LineSource> &lines, std::vector<RaySource> distant_rays)
 {
-  expansions->set_earlier(lines);
+  expansions->set_earlier(lines, std::move(distant_rays));
 }
 } // namespace ddfem

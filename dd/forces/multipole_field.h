@@ -3,6 +3,7 @@
 
 #include "dd/fmm/multipole_stress.h"
 #include "dd/forces/line_system.h"
+#include "dd/forces/lines_in_boxes.h"
 
 #include <mpi.h>
 
@@ -12,7 +13,6 @@
 
 namespace ddfem
 {
-struct LinesInBoxes;
 
 /// How the fields of many lines are summed.
 enum class SummationMethod : std::uint8_t
@@ -57,22 +57,24 @@ public:
                                 fmm::Recipient recipient = fmm::Recipient::every_rank,
                                 fmm::LocalExpansions local = fmm::LocalExpansions::used_once);
 
-  /// Puts lines and points of another time into the boxes, see fmm::MultipoleStress::move(). @p lines: those of @p now in
-  /// its order, then others; @p points_now: the images that lie in the boxes. For systems without rays.
-  void move(const LineSystem &now, std::span<const Vec3> points_now, const LinesInBoxes &lines,
+  /// Puts sources and points of another time into the boxes, see fmm::MultipoleStress::move(). @p sources: those of @p now
+  /// in its order, then others; @p points_now: the images that lie in the boxes.
+  void move(const LineSystem &now, std::span<const Vec3> points_now, const LinesInBoxes &sources,
             std::span<const std::uint32_t> leaf_of_point);
   /// As stress() after move(); what distant boxes add is that of the last time, extrapolated by @p ahead times its change before.
   /// Collective.
   std::vector<SymTensor> stress_with_kept_far_field(MPI_Comm comm, double ahead, fmm::Recipient recipient);
   /// The same with a new far field; the last one is kept for extrapolation.
   std::vector<SymTensor> stress_with_new_far_field(MPI_Comm comm);
-  /// See fmm::MultipoleStress::set_earlier(); @p lines in the order given last.
-  void set_earlier(const std::vector<fmm::LineSource> &lines);
+  /// See fmm::MultipoleStress::set_earlier(); @p lines in the order given last, pieces of rays behind those of the system.
+  void set_earlier(const std::vector<fmm::LineSource> &lines, std::vector<fmm::RaySource> distant_rays);
   /// Stress of the images beyond the 26 neighbours at point number @p i, MPa.
   SymTensor stress_of_distant_images(std::size_t i) const;
 
   fmm::MultipoleStress &sum() { return *expansions; }
   const fmm::MultipoleStress &sum() const { return *expansions; }
+  /// How the rays of the constructor's system were cut.
+  const CutRays &cut_rays() const { return cuts; }
   /// The points, in a periodic cell wrapped into it.
   std::vector<Vec3> at() const { return expansions->points(); }
 
@@ -82,6 +84,7 @@ private:
 
   const LineSystem *system;
   std::vector<Vec3> points; ///< wrapped into the periodic cell; only with images beyond the neighbours
+  CutRays cuts;
   std::unique_ptr<fmm::MultipoleStress> expansions;
 };
 } // namespace ddfem

@@ -143,10 +143,12 @@ const char *name_of(const ForceContribution c)
 NodalForces compute_nodal_forces(const Network &network, const ForceSettings &settings,
                                  const ForceEnvironment &environment, MPI_Comm comm, const bool with_contributions)
 {
-  const LineSystem system(settings.medium, network, environment.shape, settings.ray_direction, environment.cell,
-                          environment.images);
+  const bool with_multipoles = settings.summation.use_multipoles(network.n_segments());
+  const LineSystem system(
+      settings.medium, network, environment.shape, settings.ray_direction, environment.cell, environment.images,
+      with_multipoles && environment.far_field ? ImageSources::set_by_user : ImageSources::set_at_once);
   std::optional<MultipoleForces> multipoles;
-  if (settings.summation.use_multipoles(system.lines().size()))
+  if (with_multipoles)
   {
     fmm::MultipoleSettings accuracy{settings.summation.tolerance};
     accuracy.costs = environment.costs;

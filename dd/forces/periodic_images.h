@@ -7,6 +7,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace ddfem
@@ -53,6 +54,11 @@ public:
   /// millisecond for a cube at order 7, a tenth of a second for edges 1 : 2 : 4.
   void set_sources(const IsotropicMedium &medium, std::span<const LineElement> elements);
 
+  /// Chebyshev coefficients of the far stress, MPa; linear in A_mk. They stand for the sources until the next set_sources().
+  using Coefficients = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+  const Coefficients &far_field() const { return coefficients; }
+  void set_far_field(Coefficients of_sources) { coefficients = std::move(of_sources); }
+
   /// Stress (MPa) of all images of the sources except the 27 near ones at a point of the primary cell, nm. Zero before
   /// the first set_sources(). May be called from several threads.
   SymTensor far_stress(const Vec3 &x_wrapped) const;
@@ -94,8 +100,8 @@ private:
   Vec3 edges; ///< nm
   std::vector<Vec3> shifts;
   std::array<Axis, 3> axes;
-  std::vector<ThirdDerivatives> kernel;                  ///< at the distinct node distances, axis z fastest, 1/nm^2
-  Eigen::Matrix<double, 6, Eigen::Dynamic> coefficients; ///< Chebyshev coefficients of the far stress, MPa
+  std::vector<ThirdDerivatives> kernel; ///< at the distinct node distances, axis z fastest, 1/nm^2
+  Coefficients coefficients;
   double overhang = 0.0;
 };
 } // namespace ddfem

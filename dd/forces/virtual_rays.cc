@@ -101,7 +101,7 @@ std::vector<VirtualRay> virtual_rays(const Network &network, const GrainShape &s
     {
       const Vec3 b = ray_burgers(network, i);
       if (b.squaredNorm() > 0)
-        rays.push_back({network.position(i), ray_direction(shape, rule, network.position(i)), b});
+        rays.push_back({network.position(i), ray_direction(shape, rule, network.position(i)), b, network.id(i)});
     }
   return rays;
 }

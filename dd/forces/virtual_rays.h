@@ -12,7 +12,8 @@ namespace ddfem
 struct VirtualRay
 {
   Vec3 origin, direction;
-  Vec3 burgers; ///< for the line sense that leaves the origin, nm
+  Vec3 burgers;      ///< for the line sense that leaves the origin, nm
+  ObjectId node = 0; ///< at the origin, where there is one
 };
 
 /// How rays are directed if nothing is in the way; the total field does not depend on it.

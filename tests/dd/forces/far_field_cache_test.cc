@@ -24,12 +24,37 @@ using namespace samples;
 
 constexpr double tolerance = 1e-3;
 
-/// Straight lines of 24 segments of 25 nm; some cross the boundaries of the cell.
-SampleLines straight_lines(const bool periodic)
+enum class Surroundings
+{
+  infinite,
+  periodic,
+  finite
+};
+
+/// Adds a line through a cube of 1000 nm, from face to face.
+void add_line_through_cube(Network &network, const Eigen::Index axis, RandomVectors &random)
+{
+  Vec3 start = 450 * random.vector(), end = start + 250 * random.vector();
+  end = end.cwiseMax(-450).cwiseMin(450);
+  start[axis] = -500;
+  end[axis] = 500;
+  add_line(network, start, end, 24, NodeConstraint::surface, 0.25 * random.vector().normalized());
+}
+
+/// Straight lines of 24 segments of 25 nm, of which some cross the boundaries of the periodic cell, or of 42 nm, which end at the
+/// surface of a finite cube.
+SampleLines straight_lines(const Surroundings surroundings)
 {
   const Vec3 origin = Vec3::Constant(-500), lengths = Vec3::Constant(1000);
-  SampleLines t = periodic ? periodic_loops(0, origin, lengths, 7) : random_loops(0);
+  SampleLines t = surroundings == Surroundings::periodic ? periodic_loops(0, origin, lengths, 7) : random_loops(0);
   RandomVectors random(8);
+  if (surroundings == Surroundings::finite)
+  {
+    t.shape = std::make_unique<BoxShape>(origin, origin + lengths);
+    for (Eigen::Index k = 0; k < (sanitized ? 60 : 100); ++k)
+      add_line_through_cube(t.network, k % 3, random);
+    return t;
+  }
   for (int k = 0; k < (sanitized ? 80 : 140); ++k)
   {
     const Vec3 middle = 500 * random.vector(), half = 300 * random.vector().normalized();
@@ -74,14 +99,17 @@ double error_of(const SampleLines &lines, const std::vector<Vec3> &value)
   return distance(value, exact) / distance(forces(lines, &none), exact);
 }
 
-/// Every node moves at its own velocity, by @p size nm on average.
+/// Every node moves at its own velocity, by @p size nm on average; those at the surface along it.
 void move(Network &network, const double size)
 {
   for (const NodeIndex i : network.nodes())
   {
     RandomVectors random(static_cast<unsigned>(network.id(i)) + 1);
-    if (network.constraint(i) == NodeConstraint::free)
-      network.set_position(i, network.position(i) + size * random.vector());
+    Vec3 displacement = size * random.vector();
+    if (network.constraint(i) == NodeConstraint::surface)
+      displacement = (network.position(i).array().abs() > 499.9).select(0, displacement);
+    if (network.constraint(i) != NodeConstraint::pinned)
+      network.set_position(i, network.position(i) + displacement);
   }
 }
 
@@ -104,7 +132,7 @@ void insert_node(Network &network, const SegmentIndex s)
   network.insert(Segment{middle, old.end, old.burgers, {}});
 }
 
-class FarFieldCacheIn : public testing::TestWithParam<bool>
+class FarFieldCacheIn : public testing::TestWithParam<Surroundings>
 {
 };
 
@@ -221,6 +249,53 @@ TEST_P(FarFieldCacheIn, DoesNotDependOnTheNumberOfThreads)
     EXPECT_TRUE(values[step] == values[step + 4]) << step;
 }
 
+TEST(FarFieldCache, FollowsLinesThatLeaveAndEnterWithTheirRays)
+{
+  SampleLines lines = straight_lines(Surroundings::finite);
+  Network &network = lines.network;
+  FarFieldCache cache({FarFieldRefresh::adaptive});
+  cache.begin_step();
+  forces(lines, &cache);
+  const std::vector<SegmentIndex> segments(network.segments().begin(), network.segments().end());
+  for (std::size_t k = 48; k < 72; ++k) // the third line
+    network.erase(segments[k]);
+  RandomVectors random(9);
+  add_line_through_cube(network, 1, random);
+  // A line whose end goes on over an edge of the cube, where its ray turns.
+  const NodeIndex end = network.start(segments[0]);
+  network.set_position(end, Vec3(network.position(end)[0] + 0.5, 500, network.position(end)[2]));
+  const std::vector<Vec3> kept = forces(lines, &cache);
+  EXPECT_EQ(cache.counts().kept, 1U);
+  EXPECT_LT(error_of(lines, kept), tolerance);
+  // The new lines are in the boxes from the next refresh on.
+  cache.begin_step();
+  move(network, 0.1);
+  EXPECT_LT(error_of(lines, forces(lines, &cache)), tolerance);
+}
+
+TEST(FarFieldCache, GivesTheSameBitsAsANewOneWhenItHasForgotten)
+{
+  SampleLines lines = straight_lines(Surroundings::infinite);
+  FarFieldCache cache({FarFieldRefresh::adaptive}), restarted({FarFieldRefresh::adaptive});
+  const auto step = [&](FarFieldCache &which)
+  {
+    which.begin_step();
+    return forces(lines, &which);
+  };
+  for (int k = 0; k < 3; ++k)
+  {
+    step(cache);
+    move(lines.network, 0.1);
+  }
+  cache.forget();
+  for (int k = 0; k < 3; ++k)
+  {
+    EXPECT_TRUE(step(cache) == step(restarted)) << k;
+    move(lines.network, 0.1);
+  }
+  EXPECT_GT(restarted.counts().kept, 0U);
+}
+
 /// Loops and lines of aluminium under stress, in a periodic cell.
 DislocationDriver moving_network(const SlipSystems &systems, const PeriodicCell &cell)
 {
@@ -273,6 +348,7 @@ TEST(FarFieldCache, KeepsTheToleranceInARunWithChangesOfTopology)
   EXPECT_GT(driver.counts.collisions + driver.counts.coarsenings, 10U);
 }
 
-INSTANTIATE_TEST_SUITE_P(InfiniteAndPeriodic, FarFieldCacheIn, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(All, FarFieldCacheIn,
+                         testing::Values(Surroundings::infinite, Surroundings::periodic, Surroundings::finite));
 } // namespace
 } // namespace ddfem
