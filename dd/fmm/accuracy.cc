@@ -20,9 +20,9 @@ int expansion_order(const double tolerance)
   if (!(tolerance >= 1e-8 && tolerance <= 0.1))
     throw std::invalid_argument("requested error of the far field outside [1e-8, 0.1]");
   // Measured (benchmarks/accuracy.cc, two seeds and sizes): an order gains a factor of 2.1 at 1e-2, of 1.5 at 1e-8, where the corners
-  // of the boxes are what is left. The orders 9, 12, 16, 20, 25, 31 and 36 for 1e-2, 1e-3, ... leave a margin for quadrature.
+  // of the boxes are what is left. The orders 9, 12, 16, 20, 25, 31 and 38 for 1e-2, 1e-3, ... leave a margin for quadrature.
   const double beyond = std::log(1e-3 / tolerance);
-  return std::clamp(static_cast<int>(std::ceil(12 + 1.48 * beyond + 0.052 * beyond * beyond)), 3, max_order);
+  return std::clamp(static_cast<int>(std::ceil(12 + 1.41 * beyond + 0.067 * beyond * std::abs(beyond))), 3, max_order);
 }
 
 int order_at_distance(const int order, const double distance)

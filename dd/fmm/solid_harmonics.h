@@ -17,7 +17,7 @@
 namespace ddfem::fmm
 {
 /// Highest degree of the expansions; enough for errors of 1e-8.
-inline constexpr int max_order = 36;
+inline constexpr int max_order = 38;
 
 /// Number of harmonics of degree 0 to @p order.
 constexpr std::size_t n_harmonics(int order)

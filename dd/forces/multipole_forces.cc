@@ -18,13 +18,13 @@ namespace ddfem
 namespace
 {
 /// Sources nearer than this many half lengths to the middle of a panel are replaced, at most; the number of Gauss points follows.
-constexpr double largest_near_distance = 8;
+constexpr double largest_near_distance = 9;
 /// What rho^-(2n-1) of the nearest sources that are not replaced must be, for a requested error relative to the far force. The error
-/// was measured (benchmarks/accuracy.cc) as 1.4 times that at 1e-3 and up to 9 times at 1e-6, where boxes are larger and less of the force
-/// is far; the rest is margin.
+/// was measured (benchmarks/accuracy.cc) as up to 5 times that at 1e-3 and 60 times at 1e-6, where boxes are larger and less of the force
+/// is far.
 double tolerance_of_nearest(const double tolerance)
 {
-  return tolerance / (3.5 * std::pow(1e-3 / tolerance, 0.2));
+  return tolerance / (5.3 * std::pow(std::max(1e-3 / tolerance, 1.0), 0.4));
 }
 
 double bernstein_radius(const double distance)
