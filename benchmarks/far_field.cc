@@ -1,9 +1,11 @@
-// Nodal forces of a random network by the fast multipole method: processor time of the phases, and the error on sampled segments.
+// Nodal forces of a random network by the fast multipole method: processor time of the phases, and the error on sampled segments; the
+// field at points, and the direct sum.
 //
 //   far_field TOLERANCE PAIR_TOLERANCE COST_FACTOR N_SAMPLES N_SEGMENTS...
 #include "benchmarks/networks.h"
 #include "dd/elasticity/gauss.h"
 #include "dd/forces/multipole_forces.h"
+#include "samples/systems_of_lines.h"
 
 #include <array>
 #include <cmath>
@@ -37,21 +39,26 @@ Vec3 direct_force(const LineSystem &system, const std::size_t i)
   return sum;
 }
 
-/// Root mean square of the force of the far stress alone on a segment.
-double far_force(const LineSystem &system, const double tolerance)
+/// Root mean square of the force of the far stress alone on a segment, with the points and therefore the tree of the forces.
+double far_force(const LineSystem &system, const double tolerance, const int n_gauss)
 {
-  std::vector<Vec3> middles;
+  const GaussRule rule = gauss_rule(n_gauss);
+  std::vector<Vec3> points;
   for (const StraightLine &l : system.lines())
-    middles.emplace_back(0.5 * (l.start + l.end));
-  MultipoleField field(system, middles, {tolerance});
+    for (const double z : rule.points)
+      points.emplace_back(l.start + z * (l.end - l.start));
+  MultipoleField field(system, points, {tolerance});
   const auto far = field.sum().stress(MPI_COMM_SELF, fmm::Part::far);
   double sum = 0;
-  for (std::size_t i = 0; i < far.size(); ++i)
+  for (std::size_t i = 0; i < system.lines().size(); ++i)
   {
     const StraightLine &l = system.lines()[i];
-    sum += contract(far[i], l.burgers).cross(l.end - l.start).squaredNorm();
+    Vec3 force = Vec3::Zero();
+    for (std::size_t q = 0; q < rule.points.size(); ++q)
+      force += rule.weights[q] * contract(far[i * rule.points.size() + q], l.burgers).cross(l.end - l.start);
+    sum += force.squaredNorm();
   }
-  return std::sqrt(sum / static_cast<double>(far.size()));
+  return std::sqrt(sum / static_cast<double>(system.lines().size()));
 }
 
 void print_errors(const LineSystem &system, const MultipoleForces &forces, const double tolerance,
@@ -69,7 +76,7 @@ void print_errors(const LineSystem &system, const MultipoleForces &forces, const
     total += exact.squaredNorm();
   }
   const auto n = static_cast<double>(n_samples);
-  const double far = far_force(system, tolerance), rms = std::sqrt(total / n);
+  const double far = far_force(system, tolerance, forces.n_gauss_points()), rms = std::sqrt(total / n);
   std::printf("  force error: rms %.2e, largest %.2e of the far force; rms %.2e, largest %.2e of the total\n",
               std::sqrt(error / n) / far, std::sqrt(largest) / far, std::sqrt(error / n) / rms,
               std::sqrt(largest) / rms);
@@ -90,6 +97,32 @@ std::array<double, 2> counts(const fmm::Octree &tree)
     }
   }
   return {pairs, translations};
+}
+
+/// All pairs in closed form by the vectorised kernels: what the expansions compete with.
+void print_direct_sum(const LineSystem &system, const double pair_tolerance)
+{
+  std::vector<SegmentForces> result(system.lines().size());
+  const LineTable &table = system.segment_table();
+  const double start = seconds();
+#pragma omp parallel for schedule(dynamic, 16)
+  for (std::size_t i = 0; i < result.size(); ++i)
+  {
+    const StraightLine &l = system.lines()[i];
+    result[i] = force_of_segments(medium, table, l.start, l.end, l.burgers, pair_tolerance, i);
+  }
+  std::printf("  direct sum %.4f s\n", seconds() - start);
+}
+
+/// The field of the segments at as many random points.
+void print_field_at_points(const LineSystem &system, const double tolerance)
+{
+  const std::vector<Vec3> points = samples::points_among(system, system.lines().size());
+  const double start = seconds();
+  MultipoleField(system, points, {tolerance}).stress(MPI_COMM_SELF);
+  const double time = seconds() - start;
+  std::printf("  field at as many random points %.3f s, %.2f us per point\n", time,
+              1e6 * time / static_cast<double>(points.size()));
 }
 
 void measure(const std::size_t n, const double tolerance, const double pair_tolerance, const double factor,
@@ -116,6 +149,9 @@ void measure(const std::size_t n, const double tolerance, const double pair_tole
               "per segment\n",
               1e9 * t.near / pairs, 1e-6 * pairs, 1e6 * t.translations / translations, 1e-3 * translations,
               1024.0 * static_cast<double>(usage.ru_maxrss) / static_cast<double>(n));
+  print_field_at_points(system, tolerance);
+  if (constexpr std::size_t largest_direct = 20000; n <= largest_direct)
+    print_direct_sum(system, pair_tolerance);
   if (n_samples > 0)
     print_errors(system, forces, tolerance, n_samples);
 }
