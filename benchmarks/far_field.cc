@@ -3,6 +3,7 @@
 //
 //   far_field TOLERANCE PAIR_TOLERANCE COST_FACTOR N_SAMPLES N_SEGMENTS...
 #include "benchmarks/networks.h"
+#include "benchmarks/processor_time.h"
 #include "dd/elasticity/gauss.h"
 #include "dd/forces/multipole_forces.h"
 #include "samples/systems_of_lines.h"
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <sys/resource.h>
 
 namespace
@@ -19,12 +19,6 @@ namespace
 using namespace ddfem;
 
 const IsotropicMedium medium{50e3, 0.34, 0.3};
-
-/// Processor time, summed over threads.
-double seconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 Vec3 direct_force(const LineSystem &system, const std::size_t i)
 {
@@ -39,15 +33,11 @@ Vec3 direct_force(const LineSystem &system, const std::size_t i)
   return sum;
 }
 
-/// Root mean square of the force of the far stress alone on a segment, with the points and therefore the tree of the forces.
-double far_force(const LineSystem &system, const double tolerance, const int n_gauss)
+/// Root mean square of the force of the far stress alone on a segment.
+double far_force(const LineSystem &system, const MultipoleForces &forces, const double tolerance)
 {
-  const GaussRule rule = gauss_rule(n_gauss);
-  std::vector<Vec3> points;
-  for (const StraightLine &l : system.lines())
-    for (const double z : rule.points)
-      points.emplace_back(l.start + z * (l.end - l.start));
-  MultipoleField field(system, points, {tolerance});
+  const GaussRule rule = gauss_rule(forces.n_gauss_points());     // one panel on each segment: all are equally long
+  MultipoleField field(system, forces.field().at(), {tolerance}); // with the points it has the tree of the forces
   const auto far = field.sum().stress(MPI_COMM_SELF, fmm::Part::far);
   double sum = 0;
   for (std::size_t i = 0; i < system.lines().size(); ++i)
@@ -55,7 +45,7 @@ double far_force(const LineSystem &system, const double tolerance, const int n_g
     const StraightLine &l = system.lines()[i];
     Vec3 force = Vec3::Zero();
     for (std::size_t q = 0; q < rule.points.size(); ++q)
-      force += rule.weights[q] * contract(far[i * rule.points.size() + q], l.burgers).cross(l.end - l.start);
+      force += rule.weights[q] * contract(far[forces.first_point_of(i) + q], l.burgers).cross(l.end - l.start);
     sum += force.squaredNorm();
   }
   return std::sqrt(sum / static_cast<double>(system.lines().size()));
@@ -76,7 +66,7 @@ void print_errors(const LineSystem &system, const MultipoleForces &forces, const
     total += exact.squaredNorm();
   }
   const auto n = static_cast<double>(n_samples);
-  const double far = far_force(system, tolerance, forces.n_gauss_points()), rms = std::sqrt(total / n);
+  const double far = far_force(system, forces, tolerance), rms = std::sqrt(total / n);
   std::printf("  force error: rms %.2e, largest %.2e of the far force; rms %.2e, largest %.2e of the total\n",
               std::sqrt(error / n) / far, std::sqrt(largest) / far, std::sqrt(error / n) / rms,
               std::sqrt(largest) / rms);

@@ -5,6 +5,7 @@
 // Medians over the repeats, after one that is not counted. The shares of the ranks follow measured or assumed costs. Wall time of the
 // forces; all others are processor times, summed over the threads of a rank.
 #include "benchmarks/networks.h"
+#include "benchmarks/processor_time.h"
 #include "dd/common/parallel.h"
 #include "dd/forces/multipole_forces.h"
 #include "dd/forces/nodal_forces.h"
@@ -13,7 +14,6 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -41,12 +41,6 @@ enum Column : std::uint8_t
   n_columns
 };
 using Row = std::array<double, n_columns>;
-
-/// Processor time of all threads, s.
-double seconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 /// Phases of one evaluation. Times in s, what is sent in bytes.
 Row phases(const Network &network, const fmm::MultipoleSettings &settings, const double pair_tolerance)

@@ -6,6 +6,7 @@
 // The network moves STEPS steps, each in EVALUATIONS equal parts with an evaluation of the forces after each, as the stages of
 // an integrator do. All modes see the same positions.
 #include "benchmarks/networks.h"
+#include "benchmarks/processor_time.h"
 #include "dd/crystal/material.h"
 #include "dd/forces/far_field_cache.h"
 #include "dd/forces/multipole_forces.h"
@@ -15,7 +16,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -42,12 +42,6 @@ Case make_case(const char *name, const Material &m, MovingNetwork moving, const 
     c.images = std::make_unique<PeriodicImages>(c.cell->origin, c.cell->lengths);
   }
   return c;
-}
-
-/// Processor time, summed over threads.
-double seconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 /// One mode and what was measured.

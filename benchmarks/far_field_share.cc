@@ -6,6 +6,7 @@
 // The network moves STEPS steps; forces are computed at every EVERY-th, with all distant boxes (full) and without
 // (cut-off). The file gets every measurement, standard output the medians.
 #include "benchmarks/networks.h"
+#include "benchmarks/processor_time.h"
 #include "dd/crystal/material.h"
 #include "dd/forces/multipole_forces.h"
 
@@ -14,7 +15,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -79,12 +79,6 @@ Case loops_case(const double t)
   Case c{"loops", medium_of(find_material("zirconium")), small_loops(t), {}, shallowest_level(t), 0};
   c.deepest = deepest_level(c.moving.width, 5);
   return c;
-}
-
-/// Processor time, summed over threads.
-double seconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 struct Run

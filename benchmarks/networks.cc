@@ -2,6 +2,7 @@
 
 #include "dd/crystal/material.h"
 #include "dd/crystal/slip_systems.h"
+#include "samples/systems_of_lines.h"
 
 #include <cmath>
 #include <numbers>
@@ -166,28 +167,14 @@ Network random_loops(const std::size_t n_segments, const bool clustered)
   constexpr int segments_per_loop = 16;
   constexpr double radius = 65;                     // nm
   constexpr double volume_per_segment = 1e9 / 1600; // nm^3
-  std::mt19937 random(1);
-  const auto vector = [&]
-  {
-    std::uniform_real_distribution<double> u(-1, 1);
-    const double x = u(random), y = u(random), z = u(random);
-    return Vec3(x, y, z);
-  };
+  samples::RandomVectors random(1);
   const double half = 0.5 * std::cbrt(volume_per_segment * static_cast<double>(n_segments)), part = std::cbrt(0.1);
   Network network;
   for (std::size_t k = 0; k < n_segments / segments_per_loop; ++k)
   {
-    const Vec3 place = vector(), e1 = vector().normalized(), e2 = e1.unitOrthogonal();
+    const Vec3 place = random.vector();
     const Vec3 centre = half * (clustered && k % 10 != 0 ? Vec3(part * place + Vec3::Constant(1 - part)) : place);
-    const Vec3 b = 0.25 * vector().normalized();
-    std::vector<NodeIndex> nodes;
-    for (int i = 0; i < segments_per_loop; ++i)
-    {
-      const double angle = 2 * std::numbers::pi * i / segments_per_loop;
-      nodes.push_back(network.insert({centre + radius * (std::cos(angle) * e1 + std::sin(angle) * e2)}));
-    }
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      network.insert(Segment{nodes[i], nodes[(i + 1) % nodes.size()], b, {}});
+    samples::add_loop(network, centre, radius, segments_per_loop, random);
   }
   network.clean();
   return network;

@@ -1,5 +1,7 @@
 #include "dd/common/parallel.h"
 
+#include <algorithm>
+
 namespace ddfem
 {
 namespace
@@ -56,6 +58,12 @@ void gather_parts_of_bytes(void *values, const std::span<const std::size_t> begi
   MPI_Type_commit(&item);
   MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values, counts.data(), offsets.data(), item, comm);
   MPI_Type_free(&item);
+}
+
+std::size_t part_with(const std::span<const std::size_t> begin, const std::size_t item)
+{
+  const auto between = begin.subspan(1, begin.size() - 2);
+  return static_cast<std::size_t>(std::upper_bound(between.begin(), between.end(), item) - between.begin());
 }
 
 GatheredPoints gather_points(const std::span<const Vec3> mine, MPI_Comm comm)

@@ -53,6 +53,9 @@ template <class T> std::vector<T> gather_one(const T &mine, MPI_Comm comm)
   return values;
 }
 
+/// Number r of the part [begin[r], begin[r + 1]) that has @p item; the last one for items behind all.
+std::size_t part_with(std::span<const std::size_t> begin, std::size_t item);
+
 struct GatheredPoints
 {
   std::vector<Vec3> points; ///< of all ranks, one rank after the other

@@ -1,8 +1,8 @@
 #include "dd/fmm/far_passes.h"
 
+#include "dd/common/stopwatch.h"
 #include "dd/fmm/box_expansions.h"
 #include "dd/fmm/far_translations.h"
-#include "dd/fmm/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,10 +101,10 @@ public:
   void copy_local(const std::size_t box, const double ahead, const ExpansionView &result) const override
   {
     const bool extrapolated = ahead != 0 && !earlier.empty();
-    const std::size_t level = tree.boxes()[box].level, i = number_in_level(box);
-    local[level].add_to(result, i, extrapolated ? 1 + ahead : 1);
+    const std::size_t level = tree.boxes()[box].level;
+    local[level].add_to(result, place[box], extrapolated ? 1 + ahead : 1);
     if (extrapolated)
-      earlier[level].add_to(result, i, -ahead);
+      earlier[level].add_to(result, place[box], -ahead);
   }
 
   void swap_local() override
@@ -133,10 +133,6 @@ private:
   std::size_t n_levels() const
   {
     return tree.levels().size() - 1;
-  }
-  std::size_t number_in_level(const std::size_t box) const
-  {
-    return box - tree.levels()[tree.boxes()[box].level];
   }
   BoxExpansion<Scalar> moments(const std::size_t box)
   {
@@ -301,7 +297,7 @@ private:
   std::vector<Expansions<Scalar>> multipole, local; ///< by level
   std::vector<Expansions<Scalar>> earlier;          ///< local ones
   static constexpr auto none = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> place;            ///< of boxes in `local`
+  std::vector<std::uint32_t> place; ///< of boxes in `local`, and in `earlier`: both keep all boxes or are empty
   std::vector<std::uint32_t> place_of_moments; ///< of boxes in `multipole`
 };
 

@@ -1,7 +1,7 @@
 #include "dd/fmm/grid_expansions.h"
 
+#include "dd/common/stopwatch.h"
 #include "dd/elasticity/gauss.h"
-#include "dd/fmm/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>

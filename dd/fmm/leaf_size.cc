@@ -1,5 +1,7 @@
 #include "dd/fmm/leaf_size.h"
 
+#include "dd/common/morton.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -11,32 +13,24 @@ namespace
 {
 /// Sources that are counted, at most.
 constexpr std::size_t largest_sample = 20000;
-constexpr int deepest_level = 16;
+constexpr unsigned deepest_level = 16;
 
-/// Cells of the sources of a sample in the finest of grids that halve @p width: the bits of x, y and z, a level behind the other.
+/// Cells of a sample of the sources in the finest of the grids that halve @p width.
 std::vector<std::uint64_t> cells_of(const std::span<const SourceExtent> sources, const std::size_t stride,
                                     const Vec3 &origin, const double width)
 {
-  const double n = std::ldexp(1.0, deepest_level);
   std::vector<std::uint64_t> cells;
   cells.reserve(sources.size() / stride + 1);
   for (std::size_t i = 0; i < sources.size(); i += stride)
-  {
-    std::uint64_t cell = 0;
-    const Vec3 x = (n / width) * (sources[i].middle - origin);
-    for (int level = deepest_level; level-- > 0;)
-      for (int c = 0; c < 3; ++c)
-        cell = 2 * cell + (static_cast<std::uint64_t>(std::clamp(x[c], 0.0, n - 1)) >> level & 1);
-    cells.push_back(cell);
-  }
+    cells.push_back(morton_index(sources[i].middle, origin, width));
   std::sort(cells.begin(), cells.end());
   return cells;
 }
 
 /// How many others a source finds in its cell, in the mean.
-double mean_others(const std::vector<std::uint64_t> &cells, const int level)
+double mean_others(const std::vector<std::uint64_t> &cells, const unsigned level)
 {
-  const int dropped = 3 * (deepest_level - level);
+  const unsigned dropped = 3 * (morton_bits - level);
   double pairs = 0;
   for (std::size_t begin = 0, end = 0; begin < cells.size(); begin = end)
   {
@@ -66,12 +60,12 @@ double suitable_leaf_size(const std::span<const SourceExtent> sources, const Vec
   // What is direct comes from 27 boxes. Their number of lines says more than that of one, in which neighbours on the same curve count.
   constexpr double n_boxes = 27;
   const double wanted = n_boxes * lines_per_leaf;
-  int level = 0;
+  unsigned level = 0;
   double others = 0;
   do
     others = static_cast<double>(stride) * mean_others(cells, level);
   while (others > std::sqrt(8.0) * wanted && ++level < deepest_level);
-  return std::ldexp(width, -level) * std::cbrt(wanted / std::max(others, wanted / 8) / n_boxes);
+  return std::ldexp(width, -static_cast<int>(level)) * std::cbrt(wanted / std::max(others, wanted / 8) / n_boxes);
 }
 
 RootGrid fit_to_leaves(const RootGrid &grid, const std::span<const SourceExtent> sources, const double lines_per_leaf,

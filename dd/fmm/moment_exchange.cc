@@ -1,7 +1,7 @@
 #include "dd/fmm/moment_exchange.h"
 
 #include "dd/common/parallel.h"
-#include "dd/common/thread_seconds.h"
+#include "dd/common/stopwatch.h"
 
 #include <algorithm>
 
@@ -14,15 +14,12 @@ MomentExchange::MomentExchange(const Octree &tree, const std::span<const std::si
   const std::size_t n_ranks = point_limits.size() - 1;
   if (n_ranks == 1)
     return;
-  const auto limits = point_limits.subspan(1, n_ranks - 1); // between ranks
   for (const Box &box : tree.boxes())
-    owner.push_back(
-        static_cast<std::uint32_t>(std::upper_bound(limits.begin(), limits.end(), box.points_begin) - limits.begin()));
+    owner.push_back(static_cast<std::uint32_t>(part_with(point_limits, box.points_begin)));
   const BoxesByRank boxes = needed(tree, wanted, n_ranks);
   received = by_level(tree, boxes);
-  const double begin = thread_seconds();
+  const ThreadStopwatch watch(waited);
   sent = by_level(tree, asked_for(boxes));
-  waited += thread_seconds() - begin;
 }
 
 bool MomentExchange::needs_others(const Octree &tree, const Box &box) const
@@ -129,9 +126,10 @@ void MomentExchange::finish(const Unpack &unpack)
 {
   if (request == MPI_REQUEST_NULL)
     return;
-  const double begin = thread_seconds();
-  MPI_Wait(&request, MPI_STATUS_IGNORE);
-  waited += thread_seconds() - begin;
+  {
+    const ThreadStopwatch watch(waited);
+    MPI_Wait(&request, MPI_STATUS_IGNORE);
+  }
   MPI_Type_free(&item);
   const std::vector<std::uint32_t> &boxes = received[started].boxes;
   for (std::size_t k = 0; k < boxes.size(); ++k)

@@ -1,9 +1,8 @@
 #include "dd/fmm/multipole_sum.h"
 
 #include "dd/common/parallel.h"
-#include "dd/common/thread_seconds.h"
+#include "dd/common/stopwatch.h"
 #include "dd/fmm/accuracy.h"
-#include "dd/fmm/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,10 +47,12 @@ int order_of(const MultipoleSettings &settings, const int n_antiderivatives)
 }
 } // namespace
 
-double best_lines_per_leaf(const MultipoleSettings &settings, const double points_per_line)
+double best_lines_per_leaf(const MultipoleSettings &settings, const std::size_t n_lines, const std::size_t n_points)
 {
   if (settings.depth > 0)
     return 0;
+  const double points_per_line =
+      static_cast<double>(std::max<std::size_t>(n_points, 1)) / static_cast<double>(std::max<std::size_t>(n_lines, 1));
   // 27 n p evaluations for each line, with p points in each of n, and 189 / n translations.
   const double cost = translation_cost(order_at_distance(order_of(settings, 0), std::sqrt(8.0)));
   return std::sqrt(189.0 / 27.0 * settings.translation_cost_factor * cost / points_per_line);
@@ -130,15 +131,19 @@ LeafWork MultipoleSum::work(const std::size_t leaf) const
   return sum;
 }
 
+UnitCosts MultipoleSum::unit_costs(MPI_Comm comm)
+{
+  const ThreadStopwatch watch(seconds.waiting);
+  return settings.costs ? settings.costs->unit_costs(comm) : UnitCosts{};
+}
+
 void MultipoleSum::choose_share(MPI_Comm comm)
 {
   const Rank rank = rank_of(comm);
   std::vector<double> until(leaves.size() + 1, 0.0);
   if (rank.n > 1)
   {
-    const double start = thread_seconds();
-    const UnitCosts each = settings.costs ? settings.costs->unit_costs(comm) : UnitCosts{};
-    seconds.waiting += thread_seconds() - start;
+    const UnitCosts each = unit_costs(comm);
 #pragma omp parallel for schedule(static)
     for (std::size_t k = 0; k < leaves.size(); ++k)
       until[k + 1] = each.of(work(leaves[k]));
@@ -163,7 +168,7 @@ void MultipoleSum::choose_share(MPI_Comm comm)
 
 void MultipoleSum::learn_costs(const std::span<const double> further_seconds)
 {
-  if (!settings.costs)
+  if (!settings.costs || share.size() <= 2) // one rank has nothing to divide
     return;
   const double translations = seconds.translations + seconds.downward + seconds.points;
   double n_translations = 0;
@@ -295,15 +300,8 @@ std::span<const std::uint32_t> MultipoleSum::points_with_values(const Recipient 
 void MultipoleSum::add_near_of_share(const std::size_t stride)
 {
   const Stopwatch watch(seconds.near);
-  for_each_leaf_of_share(stride,
-                         [this](const std::size_t k, const std::size_t leaf)
-                         {
-                           const bool is_measured = k % WorkCosts::stride_of_leaves == 0;
-                           const double start = is_measured ? thread_seconds() : 0.0;
-                           add_near(leaf);
-                           if (is_measured)
-                             leaf_seconds[k] = thread_seconds() - start;
-                         });
+  for_each_leaf_of_share(stride, [this](const std::size_t k, const std::size_t leaf)
+                         { WorkCosts::measure(k, leaf_seconds[k], [&] { add_near(leaf); }); });
 }
 
 void MultipoleSum::gather(MPI_Comm comm)

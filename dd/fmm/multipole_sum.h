@@ -34,9 +34,8 @@ struct MultipoleSettings
   std::shared_ptr<WorkCosts> costs = nullptr;
 };
 
-/// Number of lines in a leaf at which direct work and translations cost about the same, @p points_per_line in each; 0 if the depth of the tree is
-/// given.
-double best_lines_per_leaf(const MultipoleSettings &settings, double points_per_line);
+/// Number of lines in a leaf at which direct work and translations cost about the same; 0 if the depth of the tree is given.
+double best_lines_per_leaf(const MultipoleSettings &settings, std::size_t n_lines, std::size_t n_points);
 
 /// Requested error from which on single precision suffices for what is not near.
 inline constexpr double single_precision_from = 1e-5;
@@ -182,6 +181,7 @@ private:
 
   void choose_share(MPI_Comm comm);
   LeafWork work(std::size_t leaf) const;
+  UnitCosts unit_costs(MPI_Comm comm);
   void far_passes(LocalExpansions local);
   void place_points(std::span<const Vec3> points);
   void start_values();

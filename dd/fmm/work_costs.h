@@ -1,6 +1,8 @@
 // What leaves of a tree cost, as measured.
 #pragma once
 
+#include "dd/common/stopwatch.h"
+
 #include <mpi.h>
 
 #include <cstddef>
@@ -10,8 +12,8 @@ namespace ddfem::fmm
 /// Of the evaluation of a field at the points of a leaf, or of several.
 struct LeafWork
 {
-  double translations =
-      0; ///< into the leaf, and its part of those into the boxes around it, in units of `pairs` as assumed
+  /// Into the leaf, and its part of those into the boxes around it, in units of `pairs` as assumed.
+  double translations = 0;
   double points = 0;
   double pairs = 0; ///< evaluations of a source at a point
 };
@@ -36,6 +38,15 @@ class WorkCosts
 public:
   /// Leaves whose time is measured: every so many. The clock takes half a microsecond, which all of them would feel.
   static constexpr std::size_t stride_of_leaves = 8;
+
+  /// Does @p work, which belongs to leaf number @p k of this rank, and adds its processor time to @p seconds if that leaf is measured.
+  template <class Work> static void measure(const std::size_t k, double &seconds, Work &&work)
+  {
+    if (k % stride_of_leaves != 0)
+      return work();
+    const ThreadStopwatch watch(seconds);
+    work();
+  }
 
   /// Adds what this rank has measured in one evaluation: all of its translations at once, then some of its leaves, s.
   void begin_evaluation(double translations, double seconds_of_translations);

@@ -41,11 +41,6 @@ bool place_point(const fmm::Octree &tree, Vec3 &x, std::uint32_t &leaf)
   return false;
 }
 
-fmm::RaySource source_of(const VirtualRay &r)
-{
-  return {r.origin, r.direction, r.burgers};
-}
-
 /// Makes lines the sources of the images beyond the neighbours.
 void set_images(const FieldRequest &r, const std::vector<fmm::LineSource> &lines)
 {

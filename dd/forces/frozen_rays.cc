@@ -9,11 +9,6 @@ namespace
 /// Change of the unit vector between two refreshes above which a ray has turned at an edge, and does not go on turning.
 constexpr double largest_turn = 0.1;
 
-fmm::RaySource source_of(const VirtualRay &r)
-{
-  return {r.origin, r.direction, r.burgers};
-}
-
 fmm::LineSource reversed(fmm::LineSource l)
 {
   l.burgers = -l.burgers;

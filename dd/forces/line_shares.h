@@ -40,7 +40,6 @@ public:
   std::size_t begin(const std::size_t line) const { return first[line]; }
   std::size_t end(const std::size_t line) const { return first[line + 1]; }
   std::size_t line_of(std::size_t point) const;
-  bool is_first(const std::size_t point) const { return first[line_of(point)] == point; }
 
 private:
   std::vector<std::size_t> first;

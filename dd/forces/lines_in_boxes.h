@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dd/fmm/multipole_stress.h"
+#include "dd/forces/virtual_rays.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +10,11 @@
 
 namespace ddfem
 {
+inline fmm::RaySource source_of(const VirtualRay &ray)
+{
+  return {ray.origin, ray.direction, ray.burgers};
+}
+
 /// Rays as segments up to the boundary of the root, and what is left of them.
 struct CutRays
 {

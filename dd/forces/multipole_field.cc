@@ -37,15 +37,13 @@ MultipoleField::MultipoleField(const LineSystem &system_, const std::span<const 
   std::vector<fmm::LineSource> lines = line_sources(*system);
   std::vector<RaySource> rays;
   for (const VirtualRay &r : system->rays())
-    rays.push_back({r.origin, r.direction, r.burgers});
+    rays.push_back(source_of(r));
   std::vector<Vec3> in_cell(points_.begin(), points_.end());
   for (Vec3 &x : in_cell)
     x += system->shift_into_cell(x);
   const PeriodicCell *const cell = system->cell();
   const std::vector<fmm::SourceExtent> extents = fmm::extents_of(lines);
-  const double lines_per_leaf =
-      fmm::best_lines_per_leaf(settings, static_cast<double>(std::max<std::size_t>(in_cell.size(), 1)) /
-                                             static_cast<double>(std::max<std::size_t>(lines.size(), 1)));
+  const double lines_per_leaf = fmm::best_lines_per_leaf(settings, lines.size(), in_cell.size());
   cuts.grid = cell ? fmm::periodic_grid(cell->origin, cell->lengths, extents, lines_per_leaf)
                    : fmm::enclosing_grid(extents, rays, in_cell, lines_per_leaf);
   cuts.shortest = mean_length(system->lines());

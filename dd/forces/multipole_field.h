@@ -13,7 +13,6 @@
 
 namespace ddfem
 {
-
 /// How the fields of many lines are summed.
 enum class SummationMethod : std::uint8_t
 {

@@ -1,7 +1,7 @@
 #include "dd/forces/multipole_forces.h"
 
 #include "dd/common/parallel.h"
-#include "dd/common/thread_seconds.h"
+#include "dd/common/stopwatch.h"
 #include "dd/elasticity/distance.h"
 #include "dd/elasticity/gauss.h"
 #include "dd/elasticity/vectorised/stress_kernels.h"
@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <utility>
 
 namespace ddfem
@@ -135,13 +134,11 @@ void MultipoleForces::sum(std::vector<SymTensor> stress, MPI_Comm comm)
   line_shares = shares_by_first_point(points, multipoles->sum());
   StressExchange exchange(points, line_shares, multipoles->sum(), stress, comm);
   forces.assign(points.n_lines(), {Vec3::Zero(), Vec3::Zero()});
-  const std::clock_t begin = std::clock();
-  const std::vector<double> of_leaves = replace_near();
-  spent_besides.close_pairs = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  multipoles->sum().learn_costs(of_leaves);
-  const double start = thread_seconds();
-  exchange.finish(stress);
-  spent_besides.waiting = thread_seconds() - start;
+  multipoles->sum().learn_costs(replace_near());
+  {
+    const ThreadStopwatch watch(spent_besides.waiting);
+    exchange.finish(stress);
+  }
   spent_besides.n_stresses_sent = exchange.n_sent();
   const std::span<const std::uint32_t> own = line_shares.of(rank_of(comm).mine);
 #pragma omp parallel for schedule(static)
@@ -154,16 +151,11 @@ std::vector<double> MultipoleForces::replace_near()
 {
   const fmm::Octree &tree = multipoles->sum().octree();
   const std::span<const std::uint32_t> leaves = multipoles->sum().own_leaves();
-  std::vector<double> seconds(leaves.size());
+  std::vector<double> seconds(leaves.size(), 0.0);
+  const Stopwatch watch(spent_besides.close_pairs);
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t k = 0; k < leaves.size(); ++k)
-  {
-    const bool is_measured = k % fmm::WorkCosts::stride_of_leaves == 0;
-    const double start = is_measured ? thread_seconds() : 0.0;
-    replace_near_in(tree.boxes()[leaves[k]]);
-    if (is_measured)
-      seconds[k] = thread_seconds() - start;
-  }
+    fmm::WorkCosts::measure(k, seconds[k], [&] { replace_near_in(tree.boxes()[leaves[k]]); });
   return seconds;
 }
 

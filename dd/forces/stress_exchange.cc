@@ -21,12 +21,6 @@ std::vector<std::uint32_t> inverse(const std::vector<std::uint32_t> &order)
     place[order[k]] = static_cast<std::uint32_t>(k);
   return place;
 }
-
-/// Rank that computes the field at a place in the tree.
-std::size_t rank_at(const std::vector<std::size_t> &limits, const std::size_t place)
-{
-  return static_cast<std::size_t>(std::upper_bound(limits.begin(), limits.end(), place) - limits.begin()) - 1;
-}
 } // namespace
 
 StressExchange::StressExchange(const PointsOfLines &points, const LineShares &lines, const fmm::MultipoleSum &sum,
@@ -51,11 +45,11 @@ void StressExchange::choose_points(const PointsOfLines &points, const LineShares
   const std::vector<std::uint32_t> &order = sum.octree().point_order(), place = inverse(order);
   PlacesByRank to(limits.size() - 1), from(limits.size() - 1);
   for (std::size_t k = limits[mine]; k < limits[mine + 1]; ++k)
-    if (const std::size_t owner = rank_at(limits, place[points.begin(points.line_of(order[k]))]); owner != mine)
+    if (const std::size_t owner = part_with(limits, place[points.begin(points.line_of(order[k]))]); owner != mine)
       to[owner].push_back(static_cast<std::uint32_t>(k));
   for (const std::uint32_t line : lines.of(rank))
     for (std::size_t i = points.begin(line); i < points.end(line); ++i)
-      if (const std::size_t computed_by = rank_at(limits, place[i]); computed_by != mine)
+      if (const std::size_t computed_by = part_with(limits, place[i]); computed_by != mine)
         from[computed_by].push_back(place[i]);
   const auto list = [&](Messages &messages, PlacesByRank &places)
   {

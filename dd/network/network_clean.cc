@@ -1,5 +1,5 @@
 // Defragmentation: sort by Morton index and compact (Durocher, thesis, Bordeaux 2018, section II.3.2.2).
-#include "dd/network/morton.h"
+#include "dd/common/morton.h"
 #include "dd/network/network.h"
 
 #include <algorithm>

@@ -204,12 +204,7 @@ void add_near_line(const LineKernels &kernels, const IsotropicMedium &medium, co
                    const std::size_t number, const internal::ForceTarget &target, const double tolerance,
                    internal::LaneSums &sums)
 {
-  const double *const p = lines.line(number);
-  const auto vector = [&](const std::size_t row)
-  {
-    constexpr std::size_t stride = LineTable::block_size;
-    return Vec3(p[row * stride], p[(row + 1) * stride], p[(row + 2) * stride]);
-  };
+  const auto vector = [&](const LineTable::Row row) { return lines.vector(number, row); };
   internal::LinePoints points;
   const auto use = [&] { kernels.add_points(medium, lines, number, target, points, sums); };
   internal::integrate_graded(kernels.singularities(vector(LineTable::first_end), vector(LineTable::second_end),

@@ -1,8 +1,8 @@
 // The cells of a uniform grid in free space or a periodic cell.
 #pragma once
 
+#include "dd/common/morton.h"
 #include "dd/common/types.h"
-#include "dd/network/morton.h"
 
 #include <algorithm>
 #include <array>

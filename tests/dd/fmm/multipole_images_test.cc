@@ -3,6 +3,7 @@
 #include "dd/fmm/half_line_translation.h"
 #include "dd/fmm/multipole_images.h"
 #include "dd/fmm/translation.h"
+#include "samples/values.h"
 #include "tests/dd/elasticity/elasticity_test_helpers.h"
 
 #include <gtest/gtest.h>
@@ -16,25 +17,12 @@ namespace
 {
 using fmm::ImageSource;
 using fmm::MultipoleImages;
+using samples::difference;
+using samples::rms;
 using test::copper_like;
 using test::RandomVectors;
 
 constexpr double image_tolerance = 1e-10;
-
-template <class Vectors> double rms(const Vectors &values)
-{
-  double sum = 0;
-  for (const auto &v : values)
-    sum += v.squaredNorm();
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-template <class Vectors> Vectors difference(Vectors a, const Vectors &b)
-{
-  for (std::size_t i = 0; i < a.size(); ++i)
-    a[i] -= b[i];
-  return a;
-}
 
 TEST(HalfLineTranslation, WithoutIntegrationIsTheUsualOne)
 {

@@ -1,4 +1,4 @@
-#include "dd/network/morton.h"
+#include "dd/common/morton.h"
 #include "dd/network/network.h"
 
 #include <gtest/gtest.h>

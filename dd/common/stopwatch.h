@@ -1,11 +1,9 @@
-// Processor time of phases. Internal to dd/fmm.
+// Processor time of phases.
 #pragma once
-
-#include "dd/common/thread_seconds.h"
 
 #include <ctime>
 
-namespace ddfem::fmm
+namespace ddfem
 {
 /// Adds the processor time of a scope, summed over threads, to a phase (s).
 class Stopwatch
@@ -21,17 +19,24 @@ private:
   std::clock_t start = std::clock();
 };
 
-/// The same of the thread that measures.
+/// The same of the thread that measures. Takes a microsecond.
 class ThreadStopwatch
 {
 public:
   explicit ThreadStopwatch(double &phase_) : phase(phase_) {}
   ThreadStopwatch(const ThreadStopwatch &) = delete;
   ThreadStopwatch &operator=(const ThreadStopwatch &) = delete;
-  ~ThreadStopwatch() { phase += thread_seconds() - start; }
+  ~ThreadStopwatch() { phase += now() - start; }
 
 private:
+  static double now()
+  {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+
   double &phase;
-  double start = thread_seconds();
+  double start = now();
 };
-} // namespace ddfem::fmm
+} // namespace ddfem
