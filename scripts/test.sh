@@ -83,17 +83,13 @@ run_sanitizers()
   return $status
 }
 
-# clang reads the commands of g++: it finds g++'s omp.h only if told where, and its own warnings are not errors here.
 run_tidy()
 {
   local patterns=('dd/*.cc')
   if [[ $tidy == all ]]; then
     patterns+=('fem/*.cc' 'coupling/*.cc')
   fi
-  list_files "${patterns[@]}" | xargs -0 -r -n 1 -P "$n_cores" \
-    clang-tidy -p build/ci --quiet --warnings-as-errors='*' --extra-arg=-Wno-error \
-    --extra-arg=-Wno-unknown-warning-option --extra-arg=-idirafter --extra-arg="$(g++ -print-file-name=include)" 2>&1 |
-    { grep -vE '^[0-9]+ warnings? generated\.$' || true; } | tee "$tidy_log"
+  list_files "${patterns[@]}" | xargs -0 -r "$python" scripts/run_tidy.py --jobs "$n_cores" build/ci 2>&1 | tee "$tidy_log"
 }
 
 run_tests()

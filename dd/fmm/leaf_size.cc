@@ -13,7 +13,7 @@ namespace
 {
 /// Sources that are counted, at most.
 constexpr std::size_t largest_sample = 20000;
-constexpr unsigned deepest_level = 16;
+constexpr unsigned finest_level = 16;
 
 /// Cells of a sample of the sources in the finest of the grids that halve @p width.
 std::vector<std::uint64_t> cells_of(const std::span<const SourceExtent> sources, const std::size_t stride,
@@ -64,7 +64,7 @@ double suitable_leaf_size(const std::span<const SourceExtent> sources, const Vec
   double others = 0;
   do
     others = static_cast<double>(stride) * mean_others(cells, level);
-  while (others > std::sqrt(8.0) * wanted && ++level < deepest_level);
+  while (others > std::sqrt(8.0) * wanted && ++level < finest_level);
   return std::ldexp(width, -static_cast<int>(level)) * std::cbrt(wanted / std::max(others, wanted / 8) / n_boxes);
 }
 
