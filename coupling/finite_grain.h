@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupling/face_displacements.h"
+#include "coupling/load_within_step.h"
 #include "coupling/parameters.h"
 #include "coupling/platen.h"
 #include "dd/forces/line_system.h"
@@ -64,6 +65,9 @@ public:
   /// Nominal stress per nominal strain (see Platen) of the grain under its own boundary conditions (one solve without
   /// dislocations), MPa; zero for a grain that is not held.
   double unit_load_modulus() const { return modulus; }
+  /// Stress of a unit of nominal stress at the segments of the network. As the work of the stress of unit motion on swept area is minus the
+  /// change of the load at rest, the nominal stress falls by load_per_motion stress_per_load^2 times the work of the unit field. Collective.
+  UnitLoad unit_load(const Network &network) const;
 
   /// Takes the state of the network as the one that prescribed displacements are counted from: relaxed
   /// with all surfaces traction-free, or grown from nothing in a perfect crystal.

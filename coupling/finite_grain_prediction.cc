@@ -43,6 +43,19 @@ double FiniteGrain::load_of_swept_area(const SweptArea &area) const
   return -work_on_area(area, stress);
 }
 
+UnitLoad FiniteGrain::unit_load(const Network &network) const
+{
+  if (load_per_motion == 0)
+    return {};
+  UnitLoad unit;
+  unit.points = SegmentPoints(network);
+  const double nominal_stress = load_per_motion * platen_motion->stress_per_load(); // of unit motion
+  for (const auto &s : problem->stress_at(to_points(unit.points.positions()), unit_stress))
+    unit.stress.push_back(to_sym_tensor(s) / nominal_stress);
+  unit.fall_per_work = nominal_stress * platen_motion->stress_per_load();
+  return unit;
+}
+
 double FiniteGrain::element_size() const
 {
   return std::cbrt(problem->volume() / static_cast<double>(problem->n_cells()));

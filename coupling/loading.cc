@@ -67,24 +67,28 @@ bool Loading::stress_prescribed() const
 void Loading::solve(const double time, const BodyResponse &response)
 {
   modulus = response.modulus;
-  present.time = time;
+  present = state_at(time, response);
+}
+
+LoadState Loading::state_at(const double time, const BodyResponse &response) const
+{
+  LoadState state{time, 0, 0};
   const Stage &s = current();
-  if (modulus == 0)
-    present.strain = present.stress = 0;
-  else if (stress_prescribed())
+  if (response.modulus == 0)
+    return state;
+  if (stress_prescribed())
   {
-    present.stress = s.jumps ? s.stress : stage_start.stress;
+    state.stress = s.jumps ? s.stress : stage_start.stress;
     if (s.kind == StageKind::stress_rate)
-      present.stress += s.rate * (time - stage_start.time);
-    present.strain = (present.stress - response.stress_at_rest) / modulus;
+      state.stress += s.rate * (time - stage_start.time);
+    state.strain = (state.stress - response.stress_at_rest) / response.modulus;
+    return state;
   }
-  else
-  {
-    const double drive = drive_start + drive_rate * (time - stage_start.time);
-    const double k = settings.machine_stiffness;
-    present.strain = rigid() ? drive : (k * drive - response.stress_at_rest) / (k + modulus);
-    present.stress = response.stress_at_rest + modulus * present.strain;
-  }
+  const double drive = drive_start + drive_rate * (time - stage_start.time);
+  const double k = settings.machine_stiffness;
+  state.strain = rigid() ? drive : (k * drive - response.stress_at_rest) / (k + response.modulus);
+  state.stress = response.stress_at_rest + response.modulus * state.strain;
+  return state;
 }
 
 double Loading::plastic_strain_of(const LoadState &s) const

@@ -58,6 +58,8 @@ public:
   bool finished() const { return ended() && stage_number + 1 >= settings.stages.size(); }
 
   const LoadState &state() const { return present; }
+  /// The equilibrium of the present stage at @p time with another response, without any change of state.
+  LoadState state_at(double time, const BodyResponse &response) const;
   std::size_t stage() const { return stage_number; } ///< from 0
   double elastic_strain() const { return modulus == 0 ? 0.0 : present.stress / modulus; }
   double plastic_strain() const { return plastic_strain_of(present); }

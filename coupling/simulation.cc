@@ -163,10 +163,12 @@ IntegratorStep Simulation::move_lines()
   const ForceEnvironment e = environment();
   forces_at_start.clear();
   far_field.begin_step();
+  load_in_step = load_within_step();
   // The integrator asks first at the start of the step, and last at the end of the one that it accepts.
   const auto velocity = [&](const Network &n)
   {
     forces_at_end = compute_nodal_forces(n, settings, e, communicator).total;
+    load_in_step.add_to(forces_at_end, n, load_in_step.stress_change(n));
     if (forces_at_start.empty())
       forces_at_start = forces_at_end;
     return glide_velocities(n, forces_at_end, parameters.mobility, e.shape);
@@ -174,7 +176,8 @@ IntegratorStep Simulation::move_lines()
   std::vector<double> drag(dislocations.node_capacity(), 0.0);
   for (const NodeIndex i : dislocations.nodes())
     drag[i.value] = nodal_drag(dislocations, i, parameters.mobility);
-  const double stiffness = line_tension_stiffness(dislocations, largest_line_tension(parameters), drag);
+  const double stiffness = line_tension_stiffness(dislocations, largest_line_tension(parameters), drag) +
+                           load_in_step.stiffness(dislocations, drag);
   return integrator.advance(dislocations, velocity, stiffness, time_left());
 }
 

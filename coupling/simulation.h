@@ -85,6 +85,7 @@ private:
   void balance_energy();
   Energies energies() const { return energy.energies_with(platen_work_since_balance, work_since_balance); }
   BodyResponse body_response() const;
+  LoadWithinStep load_within_step() const;
   LineWork work_of_step(const IntegratorStep &step) const;
   double work_on_swept_area() const;
   IntegratorStep move_lines();
@@ -120,6 +121,7 @@ private:
   double platen_work_since_balance = 0; ///< in these, MPa nm^3
   std::pair<double, double> last_load;  ///< load and motion of the platen when it moved last
   Loading loading;
+  LoadWithinStep load_in_step; ///< of the present step
   EnergyBalance energy;
   std::vector<Vec3> forces_at_start, forces_at_end; ///< of the lines in the last step, MPa nm^2, by NodeIndex::value
   CandidateList candidates;

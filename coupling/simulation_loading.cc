@@ -2,6 +2,7 @@
 #include "coupling/simulation.h"
 
 #include <limits>
+#include <utility>
 
 namespace ddfem::coupling
 {
@@ -39,6 +40,23 @@ BodyResponse Simulation::body_response() const
     return {solution.load_at_rest * finite_grain->platen().stress_per_load(), finite_grain->unit_load_modulus()};
   const double modulus = parameters.medium.youngs_modulus();
   return {-modulus * axial_plastic_strain(), modulus};
+}
+
+LoadWithinStep Simulation::load_within_step() const
+{
+  if (parameters.loading.type != LoadingType::stages)
+    return {};
+  UnitLoad unit;
+  if (finite_grain)
+    unit = finite_grain->unit_load(dislocations);
+  else
+  {
+    unit.points = SegmentPoints(dislocations);
+    const Vec3 &a = parameters.loading.axis;
+    unit.stress.assign(unit.points.positions().size(), symmetric_part(a * a.transpose()));
+    unit.fall_per_work = parameters.medium.youngs_modulus() / reference_volume();
+  }
+  return {dislocations, std::move(unit), loading, body_response()};
 }
 
 void Simulation::start_loading()
@@ -109,6 +127,7 @@ LineWork Simulation::work_of_step(const IntegratorStep &step) const
     const std::vector<SymTensor> stress(points.positions().size(), applied_stress());
     work.external = work_on_lines(dislocations, points, stress, step.displacement);
   }
+  work.external += load_in_step.work_of_change(dislocations, step.displacement);
   return work;
 }
 /// Of the correction or applied stress that the lines have moved in, on all that was swept.

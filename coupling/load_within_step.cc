@@ -1,0 +1,85 @@
+#include "coupling/load_within_step.h"
+
+#include "coupling/energy_balance.h"
+
+#include <cmath>
+#include <utility>
+
+namespace ddfem::coupling
+{
+LoadWithinStep::LoadWithinStep(const Network &network, UnitLoad unit_load, Loading loading_at_start,
+                               const BodyResponse &body_response)
+    : unit(std::move(unit_load)), loading(std::move(loading_at_start)), response(body_response),
+      start(network.node_capacity(), Vec3::Zero())
+{
+  for (const NodeIndex i : network.nodes())
+    start[i.value] = network.position(i);
+}
+
+double LoadWithinStep::stress_change(const double work) const
+{
+  const BodyResponse moved{response.stress_at_rest - unit.fall_per_work * work, response.modulus};
+  const LoadState &before = loading.state();
+  return loading.state_at(before.time, moved).stress - loading.state_at(before.time, response).stress;
+}
+
+std::vector<Vec3> LoadWithinStep::displacement_to(const Network &moved) const
+{
+  std::vector<Vec3> displacement(start.size(), Vec3::Zero());
+  for (const NodeIndex i : moved.nodes())
+    displacement[i.value] = moved.position(i) - start[i.value];
+  return displacement;
+}
+
+double LoadWithinStep::stress_change(const Network &moved) const
+{
+  if (unit.fall_per_work == 0)
+    return 0;
+  // The work on the area between the two positions needs the lines of the first; those at hand are of the second.
+  std::vector<Vec3> back = displacement_to(moved);
+  for (Vec3 &d : back)
+    d = -d;
+  return stress_change(-work_on_lines(moved, unit.points, unit.stress, back));
+}
+
+void LoadWithinStep::add_to(std::vector<Vec3> &force, const Network &moved, const double change) const
+{
+  if (change == 0)
+    return;
+  std::size_t i = 0;
+  for (const SegmentIndex s : moved.segments())
+  {
+    const Vec3 line = moved.direction(s), &b = moved.burgers(s);
+    const auto fractions = unit.points.fractions(i), weights = unit.points.weights(i);
+    for (std::size_t q = 0; q < fractions.size(); ++q)
+    {
+      const Vec3 f = change * weights[q] * contract(unit.stress[unit.points.begin_of(i) + q], b).cross(line);
+      force[moved.start(s).value] += (1 - fractions[q]) * f;
+      force[moved.end(s).value] += fractions[q] * f;
+    }
+    ++i;
+  }
+}
+
+double LoadWithinStep::work_of_change(const Network &network, const std::vector<Vec3> &displacement) const
+{
+  if (unit.fall_per_work == 0)
+    return 0;
+  const double work = work_on_lines(network, unit.points, unit.stress, displacement);
+  return 0.5 * stress_change(work) * work;
+}
+
+double LoadWithinStep::stiffness(const Network &network, const std::vector<double> &drag) const
+{
+  if (unit.fall_per_work == 0)
+    return 0;
+  // The change is of rank one: d(velocity)/d(position) = - c (g/D) g^T with the forces g of a unit of nominal stress.
+  std::vector<Vec3> unit_force(network.node_capacity(), Vec3::Zero());
+  add_to(unit_force, network, 1.0);
+  double sum = 0;
+  for (const NodeIndex i : network.nodes())
+    if (drag[i.value] > 0 && network.constraint(i) != NodeConstraint::pinned)
+      sum += unit_force[i.value].squaredNorm() / drag[i.value];
+  return std::abs(stress_change(1.0)) * sum;
+}
+} // namespace ddfem::coupling
