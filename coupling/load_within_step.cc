@@ -16,11 +16,11 @@ LoadWithinStep::LoadWithinStep(const Network &network, UnitLoad unit_load, Loadi
     start[i.value] = network.position(i);
 }
 
-double LoadWithinStep::stress_change(const double work) const
+double LoadWithinStep::stress_change(const double work, const double time) const
 {
   const BodyResponse moved{response.stress_at_rest - unit.fall_per_work * work, response.modulus};
   const LoadState &before = loading.state();
-  return loading.state_at(before.time, moved).stress - loading.state_at(before.time, response).stress;
+  return loading.state_at(before.time + time, moved).stress - before.stress;
 }
 
 std::vector<Vec3> LoadWithinStep::displacement_to(const Network &moved) const
@@ -31,7 +31,7 @@ std::vector<Vec3> LoadWithinStep::displacement_to(const Network &moved) const
   return displacement;
 }
 
-double LoadWithinStep::stress_change(const Network &moved) const
+double LoadWithinStep::stress_change(const Network &moved, const double time) const
 {
   if (unit.fall_per_work == 0)
     return 0;
@@ -39,7 +39,7 @@ double LoadWithinStep::stress_change(const Network &moved) const
   std::vector<Vec3> back = displacement_to(moved);
   for (Vec3 &d : back)
     d = -d;
-  return stress_change(-work_on_lines(moved, unit.points, unit.stress, back));
+  return stress_change(-work_on_lines(moved, unit.points, unit.stress, back), time);
 }
 
 void LoadWithinStep::add_to(std::vector<Vec3> &force, const Network &moved, const double change) const
@@ -61,12 +61,13 @@ void LoadWithinStep::add_to(std::vector<Vec3> &force, const Network &moved, cons
   }
 }
 
-double LoadWithinStep::work_of_change(const Network &network, const std::vector<Vec3> &displacement) const
+double LoadWithinStep::work_of_change(const Network &network, const std::vector<Vec3> &displacement,
+                                      const double dt) const
 {
   if (unit.fall_per_work == 0)
     return 0;
   const double work = work_on_lines(network, unit.points, unit.stress, displacement);
-  return 0.5 * stress_change(work) * work;
+  return 0.5 * stress_change(work, dt) * work;
 }
 
 double LoadWithinStep::stiffness(const Network &network, const std::vector<double> &drag) const
@@ -80,6 +81,6 @@ double LoadWithinStep::stiffness(const Network &network, const std::vector<doubl
   for (const NodeIndex i : network.nodes())
     if (drag[i.value] > 0 && network.constraint(i) != NodeConstraint::pinned)
       sum += unit_force[i.value].squaredNorm() / drag[i.value];
-  return std::abs(stress_change(1.0)) * sum;
+  return std::abs(stress_change(1.0, 0.0) - stress_change(0.0, 0.0)) * sum;
 }
 } // namespace ddfem::coupling

@@ -32,17 +32,19 @@ public:
   /// @p loading: state at the start of the step, to which @p response belongs.
   LoadWithinStep(const Network &network, UnitLoad unit_load, Loading loading_at_start, const BodyResponse &response);
 
-  /// Change of the nominal stress (MPa) since the start, with the lines at @p moved: the network of the start with other positions.
-  double stress_change(const Network &moved) const;
+  /// Change of the nominal stress (MPa) since the start, @p time (ns) after it and with the lines at @p moved: the network of the start
+  /// with other positions.
+  double stress_change(const Network &moved, double time) const;
   /// Adds to nodal forces (MPa nm^2, by NodeIndex::value) those of a change of the nominal stress (MPa).
   void add_to(std::vector<Vec3> &force, const Network &moved, double change) const;
-  /// The part of the work on the lines (MPa nm^3) during @p displacement (nm, by NodeIndex::value) that the change of the stress adds, by the trapezoidal rule.
-  double work_of_change(const Network &start, const std::vector<Vec3> &displacement) const;
+  /// The part of the work on the lines (MPa nm^3) during @p displacement (nm, by NodeIndex::value) in a step of @p dt (ns) that the
+  /// change of the stress adds, by the trapezoidal rule.
+  double work_of_change(const Network &network, const std::vector<Vec3> &displacement, double dt) const;
   /// Bound of what this adds to the spectral radius of d(velocity)/d(position), 1/ns. @p drag: of the nodes, MPa ns nm.
   double stiffness(const Network &network, const std::vector<double> &drag) const;
 
 private:
-  double stress_change(double work) const;
+  double stress_change(double work, double time) const;
   std::vector<Vec3> displacement_to(const Network &moved) const;
 
   UnitLoad unit;

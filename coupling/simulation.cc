@@ -165,10 +165,10 @@ IntegratorStep Simulation::move_lines()
   far_field.begin_step();
   load_in_step = load_within_step();
   // The integrator asks first at the start of the step, and last at the end of the one that it accepts.
-  const auto velocity = [&](const Network &n)
+  const auto velocity = [&](const Network &n, const double time_in_step)
   {
     forces_at_end = compute_nodal_forces(n, settings, e, communicator).total;
-    load_in_step.add_to(forces_at_end, n, load_in_step.stress_change(n));
+    load_in_step.add_to(forces_at_end, n, load_in_step.stress_change(n, time_in_step));
     if (forces_at_start.empty())
       forces_at_start = forces_at_end;
     return glide_velocities(n, forces_at_end, parameters.mobility, e.shape);

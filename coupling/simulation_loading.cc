@@ -127,7 +127,7 @@ LineWork Simulation::work_of_step(const IntegratorStep &step) const
     const std::vector<SymTensor> stress(points.positions().size(), applied_stress());
     work.external = work_on_lines(dislocations, points, stress, step.displacement);
   }
-  work.external += load_in_step.work_of_change(dislocations, step.displacement);
+  work.external += load_in_step.work_of_change(dislocations, step.displacement, step.dt);
   return work;
 }
 /// Of the correction or applied stress that the lines have moved in, on all that was swept.

@@ -5,6 +5,7 @@
 #include <functional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace ddfem
 {
@@ -86,6 +87,8 @@ Field rkc_step(Network &network, const VelocityFunction &velocity, const Field &
   const auto b_of = [&](const unsigned j) { return j == 1 ? 1 / w0 : b(j); };
   const std::size_t n = y0.size();
   Field d_old(n, Vec3::Zero()), d(n), d_new(n), y(n);
+  // The time of a stage follows from the same recursion, as the solution of dt/dt = 1.
+  double t_old = 0, time = b_of(1) * w1 * h;
   const auto place_nodes = [&]
   {
     std::transform(y0.begin(), y0.end(), d.begin(), y.begin(), std::plus<Vec3>());
@@ -99,15 +102,16 @@ Field rkc_step(Network &network, const VelocityFunction &velocity, const Field &
     const double mu_h = 2 * b_of(j) * w1 / b_of(j - 1) * h;
     const double gamma_h = -(1 - b_of(j - 1) * t.value[j - 1]) * mu_h;
     place_nodes();
-    const Field f = velocity(network);
+    const Field f = velocity(network, time);
     check_finite(network, f);
     for (std::size_t i = 0; i < n; ++i)
       d_new[i] = mu * d[i] + nu * d_old[i] + mu_h * f[i] + gamma_h * f0[i];
+    t_old = std::exchange(time, mu * time + nu * t_old + mu_h + gamma_h);
     std::swap(d_old, d);
     std::swap(d, d_new);
   }
   place_nodes();
-  f_end = velocity(network);
+  f_end = velocity(network, h);
   check_finite(network, f_end);
   return d;
 }
@@ -120,7 +124,7 @@ IntegratorStep StabilisedRungeKutta::advance(Network &network, const VelocityFun
   for (const NodeIndex i : network.nodes())
     start[i.value] = network.position(i);
   IntegratorStep step;
-  const Field f0 = velocity(network);
+  const Field f0 = velocity(network, 0);
   check_finite(network, f0);
   step.evaluations = 1;
   step.max_speed = max_norm(network, f0);

@@ -4,12 +4,30 @@
 #include "dd/network/network.h"
 
 #include <functional>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace ddfem
 {
-/// Nodal velocities (nm/ns, by NodeIndex::value) for the present positions of the network.
-using VelocityFunction = std::function<std::vector<Vec3>(const Network &)>;
+/// Nodal velocities (nm/ns, by NodeIndex::value) for the present positions of the network, at a time (ns) since the start of the step.
+/// Made of any function of a network and the time, or of a network alone.
+class VelocityFunction
+{
+public:
+  template <class F> VelocityFunction(F f)
+  {
+    if constexpr (std::is_invocable_v<F, const Network &, double>)
+      function = std::move(f);
+    else
+      function = [f = std::move(f)](const Network &network, double) { return f(network); };
+  }
+
+  std::vector<Vec3> operator()(const Network &network, double time) const { return function(network, time); }
+
+private:
+  std::function<std::vector<Vec3>(const Network &, double)> function;
+};
 
 struct IntegratorSettings
 {
