@@ -4,6 +4,7 @@
 #include "coupling/microstructure_input.h"
 #include "dd/common/units.h"
 #include "dd/crystal/material.h"
+#include "dd/mobility/linear_glide.h"
 
 #include <filesystem>
 #include <numbers>
@@ -42,8 +43,8 @@ void read_material(const InputDeck &deck, Parameters &p)
   p.burgers_magnitude = burgers_magnitude(p.lattice, p.lattice_parameter);
   p.medium.a = number_or(deck, "Material/Core radius", units::metre, p.burgers_magnitude);
   p.core_cutoff_radius = number_or(deck, "Material/Core cutoff radius", units::metre, p.medium.a);
-  p.mobility.drag_edge = number_or(deck, "Mobility/Edge drag", units::pascal_second, material->drag);
-  p.mobility.drag_screw = number_or(deck, "Mobility/Screw drag", units::pascal_second, material->drag);
+  p.mobility = linear_glide(number_or(deck, "Mobility/Edge drag", units::pascal_second, material->drag),
+                            number_or(deck, "Mobility/Screw drag", units::pascal_second, material->drag));
   p.pair_tolerance = deck.number("Forces/Pair tolerance");
   const std::string summation = deck.text("Forces/Summation");
   p.grain.summation.method = summation == "direct"      ? SummationMethod::direct

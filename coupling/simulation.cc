@@ -2,7 +2,7 @@
 
 #include "coupling/input_error.h"
 #include "dd/microstructure/clip.h"
-#include "dd/mobility/linear_glide.h"
+#include "dd/mobility/local_velocities.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/growth.h"
 #include "dd/topology/node_splitting.h"
@@ -169,11 +169,11 @@ IntegratorStep Simulation::move_lines()
     forces_at_end = compute_nodal_forces(n, settings, e, communicator).total;
     if (forces_at_start.empty())
       forces_at_start = forces_at_end;
-    return glide_velocities(n, forces_at_end, parameters.mobility, e.shape);
+    return glide_velocities(n, forces_at_end, *parameters.mobility, e.shape);
   };
   std::vector<double> drag(dislocations.node_capacity(), 0.0);
   for (const NodeIndex i : dislocations.nodes())
-    drag[i.value] = nodal_drag(dislocations, i, parameters.mobility);
+    drag[i.value] = nodal_drag(dislocations, i, *parameters.mobility);
   const double stiffness = line_tension_stiffness(dislocations, largest_line_tension(parameters), drag);
   return integrator.advance(dislocations, velocity, stiffness, time_left());
 }

@@ -1,6 +1,7 @@
 // In which directions nodes of junctions can move.
 #pragma once
 
+#include "dd/geometry/grain_shape.h"
 #include "dd/network/network.h"
 
 #include <array>
@@ -32,6 +33,17 @@ Mat3 free_directions(std::span<const ArmConstraint> arms);
 
 /// The same for a free node of the network.
 Mat3 free_directions(const Network &network, NodeIndex i);
+
+/// What is left of @p directions, a projector, to a node that slides on the face of outward normal @p outward.
+Mat3 directions_on_face(const Mat3 &directions, const Vec3 &outward);
+
+/// Directions in which a node may move: the orthogonal projector on them. Zero for pinned nodes and where the glide
+/// planes of the arms (and the surface, for surface nodes) leave none. An arm without a glide plane is sessile and leaves
+/// only its own line.
+Mat3 glide_projector(const Network &network, NodeIndex i, const GrainShape *shape);
+
+/// The same for a free node with these arms only.
+Mat3 glide_projector(const Network &network, std::span<const SegmentIndex> arms);
 
 /// The line on which @p projector projects if there is just one, a unit vector; zero otherwise.
 Vec3 only_direction(const Mat3 &projector);

@@ -74,7 +74,7 @@ private:
     const double b = aluminium.burgers_magnitude;
     return {{aluminium.mu, aluminium.nu, b},
             b,
-            {aluminium.drag, aluminium.drag},
+            linear_glide(aluminium.drag, aluminium.drag),
             {h.min_segment, h.max_segment, 0.1, h.min_segment / 8},
             {h.tolerance, 1, 0.2, 1e-4, 30}};
   }

@@ -6,6 +6,7 @@
 #include "dd/forces/nodal_forces.h"
 #include "dd/integrators/stabilised_runge_kutta.h"
 #include "dd/mobility/linear_glide.h"
+#include "dd/mobility/local_velocities.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/node_splitting.h"
 #include "dd/topology/product_plane_rule.h"
@@ -24,7 +25,7 @@ struct DriverSettings
 {
   IsotropicMedium medium;          ///< MPa, nm
   double core_cutoff_radius = 0.0; ///< nm
-  LinearGlide mobility;
+  MobilityPointer mobility;
   TopologySettings topology;
   IntegratorSettings integrator;
   double pair_tolerance = 1e-5;
@@ -52,10 +53,10 @@ public:
     if (far_field)
       far_field->begin_step();
     const auto velocity = [&](const Network &n)
-    { return glide_velocities(n, forces(n).total, settings.mobility, nullptr); };
+    { return glide_velocities(n, forces(n).total, *settings.mobility, nullptr); };
     std::vector<double> drag(network.node_capacity(), 0.0);
     for (const NodeIndex i : network.nodes())
-      drag[i.value] = nodal_drag(network, i, settings.mobility);
+      drag[i.value] = nodal_drag(network, i, *settings.mobility);
     IntegratorStep taken =
         integrator.advance(network, velocity, line_tension_stiffness(network, line_tension(), drag), dt_limit);
     TopologyContext context = this->context(taken.displacement);
