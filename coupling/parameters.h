@@ -12,7 +12,7 @@
 #include "dd/geometry/periodic_cell.h"
 #include "dd/integrators/stabilised_runge_kutta.h"
 #include "dd/microstructure/sources.h"
-#include "dd/mobility/mobility_law.h"
+#include "dd/mobility/velocity_solver.h"
 #include "dd/topology/topology_context.h"
 #include "fem/elastic_problem.h"
 #include "fem/mesh.h"
@@ -95,6 +95,7 @@ struct Parameters
   SlipSystemOptions slip;
   Orientation orientation; ///< with the unit cell, that is c/a
   MobilityPointer mobility;
+  VelocitySettings velocities;
   GrainParameters grain;
   PeriodicCell cell; ///< of the periodic mode; its volume is the reference volume of the infinite mode
   LoadingParameters loading;

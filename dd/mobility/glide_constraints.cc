@@ -36,12 +36,12 @@ Mat3 free_directions(std::span<const ArmConstraint> arms)
   if (std::all_of(arms.begin(), arms.end(), [](const ArmConstraint &a) { return a.is_sessile(); }))
     return Mat3::Zero();
   // Nearly every node has two arms on one plane.
-  if (arms.size() == 2 && arms[0].normal == arms[1].normal)
+  if (arms.size() == 2 && arms[0].normal == arms[1].normal && !arms[0].normal.isZero(0))
     return Mat3::Identity() - arms[0].normal * arms[0].normal.transpose();
   Mat3 left = Mat3::Identity();
   // Glide planes first: their normals are exact, the direction of a line is rounded like the positions of its ends.
   for (const ArmConstraint &a : arms)
-    if (!a.is_sessile())
+    if (!a.normal.isZero(0))
       forbid(left, a.normal);
   for (const ArmConstraint &a : arms)
     if (a.is_sessile())

@@ -16,8 +16,9 @@ struct ArmConstraint
 {
   Vec3 normal = Vec3::Zero(); ///< unit normal of the glide plane; zero for a sessile arm
   Vec3 line = Vec3::Zero();   ///< unit direction of the arm, either sense
+  bool climbs = false;        ///< forbids nothing: a line without a plane that a mobility law lets climb
 
-  bool is_sessile() const { return normal.isZero(0); }
+  bool is_sessile() const { return !climbs && normal.isZero(0); }
 };
 
 /// Two unit vectors that with the unit vector @p line make an orthonormal frame: what a sessile arm forbids.
