@@ -38,7 +38,7 @@ Vec3 solve_in(const Mat3 &directions, const Mat3 &a, const Vec3 &y)
 Vec3 local_velocity(const MobilityLaw &law, std::span<const NodalArm> arms, const Mat3 &directions, const Vec3 &force,
                     const double sliding_drag)
 {
-  const Vec3 target = directions * force;
+  Vec3 target = directions * force;
   if (!target.allFinite())
     return target;
   Vec3 velocity = Vec3::Zero();
@@ -48,7 +48,7 @@ Vec3 local_velocity(const MobilityLaw &law, std::span<const NodalArm> arms, cons
     const Vec3 residual = target - directions * now.force;
     if (residual.norm() <= tolerance * target.norm())
       return velocity;
-    const Vec3 step = solve_in(directions, now.slope, residual);
+    Vec3 step = solve_in(directions, now.slope, residual);
     if (law.is_linear())
       return step;
     const auto pull = [&](const double s)
@@ -67,7 +67,7 @@ Mat3 allowed_directions(const Network &network, const NodeIndex i, const Mobilit
   constraints.reserve(network.degree(i));
   for (const SegmentIndex s : network.connected_segments(i))
     constraints.push_back(law.constraint(line_state(network, s)));
-  const Mat3 directions = free_directions(constraints);
+  Mat3 directions = free_directions(constraints);
   if (network.constraint(i) != NodeConstraint::surface || !shape)
     return directions;
   return directions_on_face(directions, shape->outward_normal(network.position(i)));
@@ -75,7 +75,7 @@ Mat3 allowed_directions(const Network &network, const NodeIndex i, const Mobilit
 
 Mat3 directions_of_motion(const Network &network, const NodeIndex i, const MobilityLaw &law, const GrainShape *shape)
 {
-  const Mat3 allowed = allowed_directions(network, i, law, shape);
+  Mat3 allowed = allowed_directions(network, i, law, shape);
   const auto arms = network.connected_segments(i);
   if (arms.size() != 2 || network.is_physical(i))
     return allowed;
