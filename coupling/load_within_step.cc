@@ -70,17 +70,15 @@ double LoadWithinStep::work_of_change(const Network &network, const std::vector<
   return 0.5 * stress_change(work, dt) * work;
 }
 
-double LoadWithinStep::stiffness(const Network &network, const std::vector<double> &drag) const
+double LoadWithinStep::stiffness(const Network &network, const VelocitySolver &velocities,
+                                 const GrainShape *shape) const
 {
   if (unit.fall_per_work == 0)
     return 0;
-  // The change is of rank one: d(velocity)/d(position) = - c (g/D) g^T with the forces g of a unit of nominal stress.
+  // The change is of rank one: d(velocity)/d(position) = - c A^-1 g g^T with the forces g of a unit of nominal stress.
   std::vector<Vec3> unit_force(network.node_capacity(), Vec3::Zero());
   add_to(unit_force, network, 1.0);
-  double sum = 0;
-  for (const NodeIndex i : network.nodes())
-    if (drag[i.value] > 0 && network.constraint(i) != NodeConstraint::pinned)
-      sum += unit_force[i.value].squaredNorm() / drag[i.value];
-  return std::abs(stress_change(1.0, 0.0) - stress_change(0.0, 0.0)) * sum;
+  return std::abs(stress_change(1.0, 0.0) - stress_change(0.0, 0.0)) *
+         velocities.largest_power(network, unit_force, shape);
 }
 } // namespace ddfem::coupling

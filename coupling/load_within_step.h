@@ -3,6 +3,7 @@
 
 #include "coupling/loading.h"
 #include "dd/forces/segment_points.h"
+#include "dd/mobility/velocity_solver.h"
 #include "dd/network/network.h"
 
 #include <vector>
@@ -40,8 +41,8 @@ public:
   /// The part of the work on the lines (MPa nm^3) during @p displacement (nm, by NodeIndex::value) in a step of @p dt (ns) that the
   /// change of the stress adds, by the trapezoidal rule.
   double work_of_change(const Network &network, const std::vector<Vec3> &displacement, double dt) const;
-  /// Bound of what this adds to the spectral radius of d(velocity)/d(position), 1/ns. @p drag: of the nodes, MPa ns nm.
-  double stiffness(const Network &network, const std::vector<double> &drag) const;
+  /// Bound of what this adds to the spectral radius of d(velocity)/d(position), 1/ns.
+  double stiffness(const Network &network, const VelocitySolver &velocities, const GrainShape *shape) const;
 
 private:
   double stress_change(double work, double time) const;

@@ -91,10 +91,48 @@ void add_crystal(std::vector<ParameterEntry> &t)
 void add_mobility(std::vector<ParameterEntry> &t)
 {
   const std::string s = "Mobility";
+  t.push_back(
+      {s, "Law", "linear", one_of("linear|kink pair|relaxation"), "",
+       "Linear: viscous drag of phonons, with the friction stress, largest speed and climb drag below. Kink pair: bcc "
+       "screws move by thermally activated kink pairs (Po et al., Acta Mater. 119 (2016) 123). Relaxation: one "
+       "linear drag for all lines, to bring a network to rest; its time has no physical meaning."});
   t.push_back({s, "Edge drag", "0", not_negative(), "Pa s",
                "Drag coefficient B of edge lines: v = tau b / B; 0: that of the named material."});
   t.push_back({s, "Screw drag", "0", not_negative(), "Pa s",
                "Drag coefficient B of screw lines; 0: that of the named material."});
+  t.push_back(
+      {s, "Family drags", "", words(), "Pa s",
+       "Drag coefficients of families of slip systems, where they differ from those above, separated by ';', each as "
+       "'FAMILY: EDGE SCREW'. Families: {111}<110> (fcc); {110}<111>, {112}<111>, {123}<111>, {110}<100> (bcc); "
+       "prismatic <a>, basal <a>, first-order pyramidal <a>, first-order pyramidal <c+a>, second-order pyramidal <c+a> "
+       "(hcp). 'FAMILY: sessile' "
+       "lets none of its lines glide. Example: basal <a>: 2e-4 2e-4; second-order pyramidal <c+a>: sessile."});
+  t.push_back({s, "Friction stress", "0", not_negative(), "Pa",
+               "Lattice friction: lines under a smaller resolved shear stress stay at rest (law linear)."});
+  t.push_back(
+      {s, "Largest speed", "0", between(0, 1), "shear-wave speed",
+       "Speed that no line reaches, in parts of the speed of shear waves: the drag grows by 1/(1 - (v/c)^2) (Austin & "
+       "McDowell, Int. J. Plast. 27 (2011) 1; law linear); 0: no limit."});
+  t.push_back({s, "Climb drag", "0", not_negative(), "Pa s",
+               "Drag coefficient of the climb of lines that have no glide plane; 0: they are sessile."});
+  t.push_back({s, "Temperature", "300", positive(), "K", "Temperature of the kink-pair law."});
+  t.push_back(
+      {s, "Kink drag", "0", not_negative(), "Pa s", "Drag coefficient of kinks (law kink pair); 0: of tungsten."});
+  t.push_back({s, "Kink-pair enthalpy", "0", not_negative(), "eV",
+               "Activation enthalpy of a kink pair without stress (law kink pair); 0: of tungsten."});
+  t.push_back({s, "Kink-pair exponents", "0 0", vector_of(2), "",
+               "Exponents p and q of the barrier, (1 - (tau/tau_P)^p)^q (law kink pair); zeros: of tungsten."});
+  t.push_back({s, "Peierls stress", "0", not_negative(), "Pa", "tau_P (law kink pair); 0: of tungsten."});
+  t.push_back({s, "Athermal temperature", "0", not_negative(), "K",
+               "Temperature from which on screws need no kink pairs (law kink pair); 0: of tungsten."});
+  t.push_back(
+      {s, "Velocities", "local", one_of("local|consistent"), "",
+       "Local: the velocity of a node follows from the forces and arms of that node. Consistent: the velocities of all "
+       "nodes from one sparse system; more exact at coarse discretisation, and of smaller stable steps."});
+  t.push_back(
+      {s, "Sliding drag", "0.1", between(1e-3, 1), "drag",
+       "Drag on the sliding of nodes along their lines, in parts of that across them: a numerical coefficient that "
+       "slows the ends of junctions if it is large."});
 }
 
 void add_domain(std::vector<ParameterEntry> &t)

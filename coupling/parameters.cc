@@ -2,6 +2,7 @@
 
 #include "coupling/input_error.h"
 #include "coupling/microstructure_input.h"
+#include "coupling/mobility_input.h"
 #include "dd/common/units.h"
 #include "dd/crystal/material.h"
 
@@ -42,8 +43,6 @@ void read_material(const InputDeck &deck, Parameters &p)
   p.burgers_magnitude = burgers_magnitude(p.lattice, p.lattice_parameter);
   p.medium.a = number_or(deck, "Material/Core radius", units::metre, p.burgers_magnitude);
   p.core_cutoff_radius = number_or(deck, "Material/Core cutoff radius", units::metre, p.medium.a);
-  p.mobility.drag_edge = number_or(deck, "Mobility/Edge drag", units::pascal_second, material->drag);
-  p.mobility.drag_screw = number_or(deck, "Mobility/Screw drag", units::pascal_second, material->drag);
   p.pair_tolerance = deck.number("Forces/Pair tolerance");
   const std::string summation = deck.text("Forces/Summation");
   p.grain.summation.method = summation == "direct"      ? SummationMethod::direct
@@ -286,6 +285,7 @@ Parameters interpret(const InputDeck &deck)
   p.mode = mode == "finite" ? Mode::finite : mode == "periodic" ? Mode::periodic : Mode::infinite;
   read_material(deck, p);
   read_crystal(deck, p);
+  read_mobility(deck, p);
   read_mesh(deck, p);
   read_grain(deck, p);
   read_loading(deck, p);

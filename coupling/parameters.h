@@ -12,7 +12,7 @@
 #include "dd/geometry/periodic_cell.h"
 #include "dd/integrators/stabilised_runge_kutta.h"
 #include "dd/microstructure/sources.h"
-#include "dd/mobility/linear_glide.h"
+#include "dd/mobility/velocity_solver.h"
 #include "dd/topology/topology_context.h"
 #include "fem/elastic_problem.h"
 #include "fem/mesh.h"
@@ -94,7 +94,8 @@ struct Parameters
   double lattice_parameter = 0; ///< nm
   SlipSystemOptions slip;
   Orientation orientation; ///< with the unit cell, that is c/a
-  LinearGlide mobility;
+  MobilityPointer mobility;
+  VelocitySettings velocities;
   GrainParameters grain;
   PeriodicCell cell; ///< of the periodic mode; its volume is the reference volume of the infinite mode
   LoadingParameters loading;

@@ -2,7 +2,6 @@
 
 #include "coupling/input_error.h"
 #include "dd/microstructure/clip.h"
-#include "dd/mobility/linear_glide.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/growth.h"
 #include "dd/topology/node_splitting.h"
@@ -48,7 +47,8 @@ void install_signal_handlers()
 
 Simulation::Simulation(const Parameters &p, MPI_Comm comm)
     : parameters(p), communicator(comm), dislocations(build_network(p)), far_field(p.far_field),
-      product_plane(product_plane_rule(p.slip_systems())), integrator(p.integrator)
+      product_plane(product_plane_rule(p.slip_systems())), velocities(p.mobility, p.velocities),
+      integrator(p.integrator)
 {
   if (p.mode == Mode::finite)
   {
@@ -171,13 +171,10 @@ IntegratorStep Simulation::move_lines()
     load_in_step.add_to(forces_at_end, n, load_in_step.stress_change(n, time_in_step));
     if (forces_at_start.empty())
       forces_at_start = forces_at_end;
-    return glide_velocities(n, forces_at_end, parameters.mobility, e.shape);
+    return velocities.velocities(n, forces_at_end, e.shape);
   };
-  std::vector<double> drag(dislocations.node_capacity(), 0.0);
-  for (const NodeIndex i : dislocations.nodes())
-    drag[i.value] = nodal_drag(dislocations, i, parameters.mobility);
-  const double stiffness = line_tension_stiffness(dislocations, largest_line_tension(parameters), drag) +
-                           load_in_step.stiffness(dislocations, drag);
+  const double stiffness = velocities.stiffness(dislocations, largest_line_tension(parameters), e.shape) +
+                           load_in_step.stiffness(dislocations, velocities, e.shape);
   return integrator.advance(dislocations, velocity, stiffness, time_left());
 }
 

@@ -112,6 +112,7 @@ private:
   std::shared_ptr<fmm::WorkCosts> costs = std::make_shared<fmm::WorkCosts>(); ///< of the forces
   OpenLines initial_open_lines;
   ProductPlane product_plane;
+  VelocitySolver velocities;
   StabilisedRungeKutta integrator;
   SegmentField correction; ///< of the last solve, at the segments
   std::unique_ptr<CorrectionUpdate> update;

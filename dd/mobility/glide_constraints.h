@@ -1,6 +1,7 @@
 // In which directions nodes of junctions can move.
 #pragma once
 
+#include "dd/geometry/grain_shape.h"
 #include "dd/network/network.h"
 
 #include <array>
@@ -15,8 +16,9 @@ struct ArmConstraint
 {
   Vec3 normal = Vec3::Zero(); ///< unit normal of the glide plane; zero for a sessile arm
   Vec3 line = Vec3::Zero();   ///< unit direction of the arm, either sense
+  bool climbs = false;        ///< forbids nothing: a line without a plane that a mobility law lets climb
 
-  bool is_sessile() const { return normal.isZero(0); }
+  bool is_sessile() const { return !climbs && normal.isZero(0); }
 };
 
 /// Two unit vectors that with the unit vector @p line make an orthonormal frame: what a sessile arm forbids.
@@ -32,6 +34,17 @@ Mat3 free_directions(std::span<const ArmConstraint> arms);
 
 /// The same for a free node of the network.
 Mat3 free_directions(const Network &network, NodeIndex i);
+
+/// What is left of @p directions, a projector, to a node that slides on the face of outward normal @p outward.
+Mat3 directions_on_face(const Mat3 &directions, const Vec3 &outward);
+
+/// Directions in which a node may move: the orthogonal projector on them. Zero for pinned nodes and where the glide
+/// planes of the arms (and the surface, for surface nodes) leave none. An arm without a glide plane is sessile and leaves
+/// only its own line.
+Mat3 glide_projector(const Network &network, NodeIndex i, const GrainShape *shape);
+
+/// The same for a free node with these arms only.
+Mat3 glide_projector(const Network &network, std::span<const SegmentIndex> arms);
 
 /// The line on which @p projector projects if there is just one, a unit vector; zero otherwise.
 Vec3 only_direction(const Mat3 &projector);

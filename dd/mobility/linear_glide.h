@@ -1,44 +1,35 @@
 // Linear viscous glide.
 #pragma once
 
-#include "dd/geometry/grain_shape.h"
-#include "dd/network/network.h"
-
-#include <span>
-#include <vector>
+#include "dd/mobility/mobility_law.h"
 
 namespace ddfem
 {
-/// Phonon drag per length of line, MPa ns (1e-3 Pa s = 1 MPa ns). Between the characters
+/// Drag coefficients of one kind of line, MPa ns (1e-3 Pa s = 1 MPa ns). Between the characters
 /// B(theta) = B_screw cos^2 theta + B_edge sin^2 theta, theta the angle between line and Burgers vector.
-struct LinearGlide
+struct CharacterDrag
 {
-  double drag_edge = 0.0;
-  double drag_screw = 0.0;
+  double edge = 0.0, screw = 0.0;
+
+  double operator()(const double squared_cosine) const { return edge + (screw - edge) * squared_cosine; }
 };
 
-/// Directions in which a node may move: the orthogonal projector on them. Zero for pinned nodes and where the glide
-/// planes of the arms (and the surface, for surface nodes) leave none. An arm without a glide plane is sessile and leaves
-/// only its own line.
-Mat3 glide_projector(const Network &network, NodeIndex i, const GrainShape *shape);
+/// Phonon drag proportional to the velocity, the same on all slip planes: f = B(theta) v.
+/// Source: Hirth & Lothe, Theory of Dislocations, 2nd ed. 1982, section 7-7; interpolation in the character: Arsenlis et al.,
+/// MSMSE 15 (2007) 553.
+class LinearGlide : public MobilityLaw
+{
+public:
+  explicit LinearGlide(const CharacterDrag &drag_coefficients) : coefficients(drag_coefficients) {}
 
-/// The same for a free node with these arms only.
-Mat3 glide_projector(const Network &network, std::span<const SegmentIndex> arms);
+  Resistance resistance(const LineState &line, const Vec3 &velocity) const override;
+  double drag(const LineState &line) const override { return coefficients(line.squared_cosine()); }
+  bool is_linear() const override { return true; }
 
-/// Drag of a free node with these arms, MPa ns nm: half of B(theta) L of each.
-double drag_of_arms(const Network &network, std::span<const SegmentIndex> arms, const LinearGlide &law);
+private:
+  CharacterDrag coefficients;
+};
 
-/// Drag of a node, MPa ns nm.
-double nodal_drag(const Network &network, NodeIndex i, const LinearGlide &law);
-
-/// Takes off @p velocity (any unit) of a discretisation node what is parallel to the chord between its neighbours: such a motion
-/// changes nothing but the spacing of the nodes, goes on for ever in equilibrium, and keeps the remeshing busy. Other nodes
-/// keep theirs.
-Vec3 across_line(const Network &network, NodeIndex i, const Vec3 &velocity);
-
-/// Local nodal velocities v = P f / (sum over arms of B(theta) L / 2), nm/ns, indexed by NodeIndex::value; of discretisation
-/// nodes the part across the line.
-/// @p force: nodal forces, MPa nm^2.
-std::vector<Vec3> glide_velocities(const Network &network, const std::vector<Vec3> &force, const LinearGlide &law,
-                                   const GrainShape *shape);
+/// Drag coefficients in MPa ns.
+MobilityPointer linear_glide(double edge, double screw);
 } // namespace ddfem

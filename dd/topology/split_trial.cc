@@ -29,18 +29,19 @@ NodeNeighbourhood::NodeNeighbourhood(const Network &network, const NodeIndex nod
   {
     const NodeIndex far = network.other_end(s, node);
     const Vec3 far_end = (network.start(s) == node ? 1.0 : -1.0) * network.direction(s);
-    node_arms.push_back({far_end, network.burgers_from(s, node), arm_constraint(network, s)});
+    node_arms.push_back({far_end, network.burgers_from(s, node), network.normal(s),
+                         model.mobility->constraint(line_state(network, s))});
     for (const SegmentIndex next : network.connected_segments(far))
       if (std::find(known.begin(), known.end(), next) == known.end())
       {
         known.push_back(next);
         const Vec3 along = (network.start(next) == far ? 1.0 : -1.0) * network.direction(next);
-        surroundings.push_back({far_end, far_end + along, network.burgers_from(next, far)});
+        surroundings.push_back({far_end, far_end + along, network.burgers_from(next, far), network.normal(next)});
       }
   }
   std::vector<Line> lines;
   for (const Arm &a : node_arms)
-    lines.push_back({Vec3::Zero(), a.far_end, a.burgers});
+    lines.push_back({Vec3::Zero(), a.far_end, a.burgers, a.normal});
   for (std::size_t k = 0; k < node_arms.size(); ++k)
   {
     const SegmentForces &total = forces.segment_ends[segments[k].value];
@@ -74,16 +75,9 @@ Mat3 NodeNeighbourhood::directions(const TrialSplit &split, const std::size_t si
   for (const std::size_t k : split.arms[side])
     constraints.push_back(node_arms[k].constraint);
   if (!split.burgers.isZero(0))
-    constraints.push_back({split.junction_normal, (split.shift[1] - split.shift[0]).normalized()});
+    constraints.push_back(model.mobility->constraint(
+        {(split.shift[1] - split.shift[0]).normalized(), split.burgers, split.junction_normal}));
   return free_directions(constraints);
-}
-
-double NodeNeighbourhood::drag(const Line &line) const
-{
-  const Vec3 t = line.end - line.start;
-  const double length = t.norm(), cosine = t.dot(line.burgers) / (length * line.burgers.norm());
-  const LinearGlide &law = model.mobility;
-  return 0.5 * length * (law.drag_edge + (law.drag_screw - law.drag_edge) * cosine * cosine);
 }
 
 SegmentForces NodeNeighbourhood::near_force(const std::vector<Line> &lines, const std::size_t number) const
@@ -114,13 +108,14 @@ SegmentForces NodeNeighbourhood::near_force(const std::vector<Line> &lines, cons
 NodeMotion NodeNeighbourhood::merged(std::span<const std::size_t> which) const
 {
   NodeMotion part;
-  double sum_of_drags = 0;
+  std::vector<NodalArm> part_arms;
   for (const std::size_t k : which)
   {
-    part.force += node_arms[k].force;
-    sum_of_drags += drag({Vec3::Zero(), node_arms[k].far_end, node_arms[k].burgers});
+    const Arm &a = node_arms[k];
+    part.force += a.force;
+    part_arms.push_back(Line{Vec3::Zero(), a.far_end, a.burgers, a.normal}.as_arm());
   }
-  part.velocity = directions(which) * part.force / sum_of_drags;
+  part.velocity = local_velocity(*model.mobility, part_arms, directions(which), part.force);
   return part;
 }
 
@@ -129,27 +124,27 @@ std::array<NodeMotion, 2> NodeNeighbourhood::motion(const TrialSplit &split) con
   std::vector<Line> lines(node_arms.size());
   for (std::size_t side = 0; side < 2; ++side)
     for (const std::size_t k : split.arms[side])
-      lines[k] = {split.shift[side], node_arms[k].far_end, node_arms[k].burgers};
+      lines[k] = {split.shift[side], node_arms[k].far_end, node_arms[k].burgers, node_arms[k].normal};
   SegmentForces junction;
-  double junction_drag = 0;
+  std::vector<NodalArm> junction_arm;
   if (!split.burgers.isZero(0))
   {
-    lines.push_back({split.shift[0], split.shift[1], split.burgers});
+    lines.push_back({split.shift[0], split.shift[1], split.burgers, split.junction_normal});
     junction = near_force(lines, lines.size() - 1);
-    junction_drag = drag(lines.back());
+    junction_arm.push_back(lines.back().as_arm());
   }
   std::array<NodeMotion, 2> parts;
   for (std::size_t side = 0; side < 2; ++side)
   {
     NodeMotion &part = parts[side];
-    double sum_of_drags = junction_drag;
+    std::vector<NodalArm> part_arms = junction_arm;
     part.force = side == 0 ? junction.start : junction.end;
     for (const std::size_t k : split.arms[side])
     {
       part.force += node_arms[k].background + near_force(lines, k).start;
-      sum_of_drags += drag(lines[k]);
+      part_arms.push_back(lines[k].as_arm());
     }
-    part.velocity = directions(split, side) * part.force / sum_of_drags;
+    part.velocity = local_velocity(*model.mobility, part_arms, directions(split, side), part.force);
   }
   return parts;
 }

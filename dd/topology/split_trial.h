@@ -4,8 +4,7 @@
 #include "dd/elasticity/isotropic.h"
 #include "dd/elasticity/segment_force.h"
 #include "dd/forces/nodal_forces.h"
-#include "dd/mobility/glide_constraints.h"
-#include "dd/mobility/linear_glide.h"
+#include "dd/mobility/local_velocities.h"
 
 #include <array>
 #include <span>
@@ -18,7 +17,7 @@ struct SplittingModel
 {
   IsotropicMedium medium;
   double core_cutoff_radius = 0.0; ///< nm; as in ForceSettings
-  LinearGlide mobility;
+  MobilityPointer mobility;
   /// Uniform stress, MPa: acts on the new junction and follows the arms as they turn.
   SymTensor applied = SymTensor::Zero();
   double pair_tolerance = 1e-4; ///< of the forces between the segments near the node
@@ -52,6 +51,7 @@ public:
   struct Arm
   {
     Vec3 far_end, burgers; ///< burgers for the line sense that leaves the node
+    Vec3 normal;           ///< of its glide plane; zero: sessile
     ArmConstraint constraint;
     Vec3 force = Vec3::Zero();      ///< total, at the unsplit node, MPa nm^2
     Vec3 background = Vec3::Zero(); ///< the part of it that no trial recomputes
@@ -81,12 +81,12 @@ public:
 private:
   struct Line
   {
-    Vec3 start, end, burgers;
+    Vec3 start, end, burgers, normal;
+    NodalArm as_arm() const { return {{(end - start).normalized(), burgers, normal}, (end - start).norm()}; }
   };
 
   /// Force of everything near, and of the applied stress, on the ends of line @p target, which is lines[number].
   SegmentForces near_force(const std::vector<Line> &lines, std::size_t number) const;
-  double drag(const Line &line) const;
 
   const SplittingModel &model;
   std::vector<Arm> node_arms;

@@ -36,8 +36,8 @@ struct Discretisation
 class CrossingLines : public DislocationDriver
 {
 public:
-  CrossingLines(const std::array<Line, 2> &lines, const Discretisation &h)
-      : DislocationDriver(settings(h), fcc), product(lines[0].burgers + lines[1].burgers)
+  CrossingLines(const std::array<Line, 2> &lines, const Discretisation &h, const VelocitySettings &velocities = {})
+      : DislocationDriver(settings(h, velocities), fcc), product(lines[0].burgers + lines[1].burgers)
   {
     for (const Line &l : lines)
     {
@@ -69,14 +69,17 @@ public:
   }
 
 private:
-  static DriverSettings settings(const Discretisation &h)
+  static DriverSettings settings(const Discretisation &h, const VelocitySettings &velocities)
   {
     const double b = aluminium.burgers_magnitude;
     return {{aluminium.mu, aluminium.nu, b},
             b,
-            {aluminium.drag, aluminium.drag},
+            linear_glide(aluminium.drag, aluminium.drag),
             {h.min_segment, h.max_segment, 0.1, h.min_segment / 8},
-            {h.tolerance, 1, 0.2, 1e-4, 30}};
+            {h.tolerance, 1, 0.2, 1e-4, 30},
+            1e-5,
+            {},
+            velocities};
   }
   Vec3 product;
 };
@@ -102,6 +105,74 @@ template <class... T> std::string row(const T &...fields)
   std::ostringstream out;
   ((out << fields << ' '), ...);
   return out.str();
+}
+
+/// How often a node next to an end of the junction is more than twice as fast as the one behind it.
+struct Race
+{
+  std::size_t pairs = 0, twice = 0;
+
+  void count(const Network &network, const std::vector<Vec3> &velocity)
+  {
+    constexpr double at_rest = 5; // nm/ns
+    for (const NodeIndex end : network.nodes())
+      if (network.degree(end) == 3)
+        for (const SegmentIndex s : network.connected_segments(end))
+        {
+          const NodeIndex first = network.other_end(s, end);
+          if (network.is_physical(first) || !network.plane(s).is_valid())
+            continue;
+          const auto arms = network.connected_segments(first);
+          const NodeIndex second = network.other_end(arms[0] == s ? arms[1] : arms[0], first);
+          const double fast = velocity[first.value].norm(), slow = velocity[second.value].norm();
+          if (network.is_physical(second) || std::max(fast, slow) < at_rest)
+            continue;
+          ++pairs;
+          twice += fast > 2 * slow ? 1 : 0;
+        }
+  }
+};
+
+/// The lock at 0 and then 150 MPa; returns the length of the junction after 20 ps, while it zips.
+double zipped_length(const VelocitySettings &velocities, const Discretisation &h, const std::string &name,
+                     const validation::Report &report)
+{
+  CrossingLines lock(thesis_lines(), h, velocities);
+  unsigned steps = 0, evaluations = 0;
+  Race race;
+  const auto run_to = [&](const double until)
+  {
+    while (lock.time < until - 1e-12)
+    {
+      evaluations += lock.step(until - lock.time).evaluations;
+      ++steps;
+      race.count(lock.network, lock.velocities());
+    }
+    return lock.junction();
+  };
+  const double zipping = run_to(0.02), at_rest = run_to(0.5);
+  lock.applied = shear(150);
+  const double unzipping = run_to(0.52), loaded = run_to(1.5);
+  report.note(row("velocities", name, zipping, at_rest, unzipping, loaded, "nm; steps", steps, "mean", 1.5e3 / steps,
+                  "ps; evaluations", evaluations, "; remesh operations",
+                  lock.counts.refinements + lock.counts.coarsenings, "; node next to the junction twice as fast in",
+                  race.twice, "of", race.pairs));
+  return zipping;
+}
+
+/// Local and consistent velocities, with and without sliding drag (thesis, section IV.1.1.2, figures IV.8 to IV.10).
+void compare_velocities(validation::Report &report)
+{
+  const Discretisation coarse{4, 10}, fine{1.6, 4, 0.01};
+  const double converged =
+      zipped_length({VelocityMethod::consistent, 0.01}, fine, "consistent 0.01, 1.6 to 4 nm:", report);
+  zipped_length({VelocityMethod::local, 1}, coarse, "local 1:", report);
+  const double local = zipped_length({VelocityMethod::local, 0.1}, coarse, "local 0.1:", report);
+  zipped_length({VelocityMethod::local, 0.01}, coarse, "local 0.01:", report);
+  zipped_length({VelocityMethod::consistent, 1}, coarse, "consistent 1:", report);
+  const double consistent = zipped_length({VelocityMethod::consistent, 0.1}, coarse, "consistent 0.1:", report);
+  report.below("lock: length after 20 ps, local velocities, against fine segments", local / converged - 1, 0.03);
+  report.below("lock: the same, consistent velocities", consistent / converged - 1, 0.02);
 }
 
 struct LockLengths
@@ -216,6 +287,7 @@ int main(int argc, char **argv)
       argc, argv,
       [](validation::Report &report)
       {
+        compare_velocities(report);
         // examples/lomer_cottrell_lock/quasi_static.py --local --shortest 3 --pieces 16 --stress 0 150
         constexpr double free = 96.868, loaded = 79.069;
         LockLengths smallest{1e9, 1e9}, largest;

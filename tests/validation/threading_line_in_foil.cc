@@ -5,6 +5,7 @@
 #include "dd/forces/nodal_forces.h"
 #include "dd/geometry/grain_shape.h"
 #include "dd/mobility/linear_glide.h"
+#include "dd/mobility/local_velocities.h"
 #include "image_field.h"
 
 using namespace ddfem;
@@ -44,7 +45,7 @@ public:
   {
     Network network;
     const auto nodes = add_upright_line(network, phi);
-    const LinearGlide law{drag, drag};
+    const LinearGlide law({drag, drag});
     // Stable: less than 2 / (largest rate) of a line of this tension and element length.
     const double tension = wide_core.mu * burgers * burgers, step = thickness / pieces,
                  dt = 0.25 * drag * step * step / tension;

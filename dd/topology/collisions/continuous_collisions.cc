@@ -1,6 +1,6 @@
 #include "dd/topology/collisions/continuous_collisions.h"
 
-#include "dd/mobility/linear_glide.h"
+#include "dd/mobility/glide_constraints.h"
 #include "dd/topology/collisions/collision_events.h"
 #include "dd/topology/collisions/contact.h"
 #include "dd/topology/collisions/islands.h"

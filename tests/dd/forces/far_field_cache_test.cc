@@ -300,7 +300,8 @@ TEST(FarFieldCache, GivesTheSameBitsAsANewOneWhenItHasForgotten)
 DislocationDriver moving_network(const SlipSystems &systems, const PeriodicCell &cell)
 {
   const Material &m = find_material("aluminium");
-  DriverSettings settings{{m.mu, m.nu, m.burgers_magnitude}, m.burgers_magnitude, {m.drag, m.drag}, {}, {}, 1e-4};
+  DriverSettings settings{
+      {m.mu, m.nu, m.burgers_magnitude}, m.burgers_magnitude, linear_glide(m.drag, m.drag), {}, {}, 1e-4};
   settings.topology.min_area = 15;
   settings.topology.collision_radius = 1.25;
   settings.summation = {SummationMethod::multipole, tolerance};

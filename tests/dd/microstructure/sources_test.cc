@@ -1,5 +1,5 @@
 #include "dd/microstructure/sources.h"
-#include "dd/mobility/linear_glide.h"
+#include "dd/mobility/glide_constraints.h"
 
 #include <gtest/gtest.h>
 

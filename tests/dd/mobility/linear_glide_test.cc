@@ -1,5 +1,6 @@
 #include "dd/microstructure/sources.h"
 #include "dd/mobility/linear_glide.h"
+#include "dd/mobility/local_velocities.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,8 @@ namespace ddfem
 {
 namespace
 {
-const LinearGlide law{0.02, 0.01};
+const CharacterDrag drag{0.02, 0.01};
+const LinearGlide law(drag);
 
 /// Three nodes along @p t with b = 0.25 ex in the plane z = 0.
 Network straight_line(const Vec3 &t)
@@ -34,7 +36,7 @@ TEST(LinearGlide, StraightLineGlidesAtStressTimesBurgersOverDrag)
     const Vec3 direction = edge ? Vec3::UnitX() : Vec3::UnitY();
     force[middle(n).value] = tau * b * 10 * direction;
     const auto v = glide_velocities(n, force, law, nullptr);
-    const double expected = tau * b / (edge ? law.drag_edge : law.drag_screw);
+    const double expected = tau * b / (edge ? drag.edge : drag.screw);
     EXPECT_NEAR((v[middle(n).value] - expected * direction).norm(), 0, 1e-12 * expected);
   }
 }

@@ -1,3 +1,4 @@
+#include "dd/mobility/linear_glide.h"
 #include "dd/topology/collisions/proximity_collisions.h"
 #include "dd/topology/line_operations.h"
 #include "dd/topology/motion.h"
@@ -30,7 +31,7 @@ unsigned move_and_collide(TopologyContext &c)
 
 void split(TopologyContext &c)
 {
-  const SplittingModel model{aluminium, aluminium.a, {0.01, 0.01}};
+  const SplittingModel model{aluminium, aluminium.a, linear_glide(0.01, 0.01)};
   const ForceSettings settings{aluminium, aluminium.a, 1e-5, RayDirection::normal};
   split_nodes(c, model,
               [&](const Network &n) { return compute_nodal_forces(n, settings, ForceEnvironment{}, MPI_COMM_SELF); });

@@ -26,7 +26,7 @@ namespace ddfem
 inline DriverSettings coarse_settings(const Material &m)
 {
   const double b = m.burgers_magnitude;
-  return {{m.mu, m.nu, b}, b, {m.drag, m.drag}, {6, 16, 0.1, 1}, {0.1, 2, 0.2, 1e-4, 30}};
+  return {{m.mu, m.nu, b}, b, linear_glide(m.drag, m.drag), {6, 16, 0.1, 1}, {0.1, 2, 0.2, 1e-4, 30}};
 }
 
 inline SlipSystems slip_systems_of(const Material &m)

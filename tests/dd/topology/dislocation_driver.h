@@ -6,6 +6,7 @@
 #include "dd/forces/nodal_forces.h"
 #include "dd/integrators/stabilised_runge_kutta.h"
 #include "dd/mobility/linear_glide.h"
+#include "dd/mobility/velocity_solver.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/node_splitting.h"
 #include "dd/topology/product_plane_rule.h"
@@ -24,11 +25,12 @@ struct DriverSettings
 {
   IsotropicMedium medium;          ///< MPa, nm
   double core_cutoff_radius = 0.0; ///< nm
-  LinearGlide mobility;
+  MobilityPointer mobility;
   TopologySettings topology;
   IntegratorSettings integrator;
   double pair_tolerance = 1e-5;
   SummationSettings summation = {};
+  VelocitySettings velocities = {};
 };
 
 /// A network in an infinite body or, with @p cell, in a periodic one.
@@ -37,7 +39,7 @@ class DislocationDriver
 public:
   DislocationDriver(DriverSettings driver_settings, const SlipSystems &systems, const PeriodicCell *periodic = nullptr)
       : settings(std::move(driver_settings)), cell(periodic), product_plane(product_plane_rule(systems)),
-        integrator(settings.integrator)
+        solver(settings.mobility, settings.velocities), integrator(settings.integrator)
   {
     if (cell)
     {
@@ -51,13 +53,9 @@ public:
   {
     if (far_field)
       far_field->begin_step();
-    const auto velocity = [&](const Network &n)
-    { return glide_velocities(n, forces(n).total, settings.mobility, nullptr); };
-    std::vector<double> drag(network.node_capacity(), 0.0);
-    for (const NodeIndex i : network.nodes())
-      drag[i.value] = nodal_drag(network, i, settings.mobility);
+    const auto velocity = [&](const Network &n) { return solver.velocities(n, forces(n).total, nullptr); };
     IntegratorStep taken =
-        integrator.advance(network, velocity, line_tension_stiffness(network, line_tension(), drag), dt_limit);
+        integrator.advance(network, velocity, solver.stiffness(network, line_tension(), nullptr), dt_limit);
     TopologyContext context = this->context(taken.displacement);
     move_lines(context, candidates);
     split_nodes(context, splitting(), [&](const Network &n) { return forces(n); });
@@ -83,6 +81,9 @@ public:
     }
     return fastest;
   }
+
+  /// Of the present network, nm/ns, by NodeIndex::value.
+  std::vector<Vec3> velocities() { return solver.velocities(network, forces(network).total, nullptr); }
 
   NodalForces forces(const Network &n)
   {
@@ -155,6 +156,7 @@ private:
   const PeriodicCell *cell;
   std::unique_ptr<PeriodicImages> images;
   ProductPlane product_plane;
+  VelocitySolver solver;
   StabilisedRungeKutta integrator;
   CandidateList candidates;
   SweptArea swept;

@@ -3,6 +3,7 @@
 #include "dd/forces/nodal_forces.h"
 #include "dd/integrators/stabilised_runge_kutta.h"
 #include "dd/mobility/linear_glide.h"
+#include "dd/mobility/local_velocities.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/node_splitting.h"
 #include "dd/topology/remesh.h"
@@ -30,7 +31,7 @@ struct SourceInGrain : TopologyFixture
   const Material &aluminium = find_material("aluminium");
   const double b = aluminium.burgers_magnitude;
   IsotropicMedium medium{aluminium.mu, aluminium.nu, b};
-  LinearGlide law{aluminium.drag, aluminium.drag};
+  MobilityPointer law = linear_glide(aluminium.drag, aluminium.drag);
   BoxShape box{Vec3(-half_width, -half_width, -half_width), Vec3(half_width, half_width, half_width)};
   SymTensor applied = SymTensor::Zero();
   CandidateList candidates;
@@ -62,7 +63,7 @@ struct SourceInGrain : TopologyFixture
   {
     std::vector<double> drag(network.node_capacity(), 0.0);
     for (const NodeIndex i : network.nodes())
-      drag[i.value] = nodal_drag(network, i, law);
+      drag[i.value] = nodal_drag(network, i, *law);
     const double tension = medium.mu * b * b * (1 + medium.nu) / (4 * std::numbers::pi * (1 - medium.nu)) *
                            std::log(2 * settings.max_segment / medium.a);
     return line_tension_stiffness(network, tension, drag);
@@ -70,7 +71,7 @@ struct SourceInGrain : TopologyFixture
 
   void step()
   {
-    const auto velocity = [&](const Network &n) { return glide_velocities(n, forces(n).total, law, &box); };
+    const auto velocity = [&](const Network &n) { return glide_velocities(n, forces(n).total, *law, &box); };
     TopologyContext c = context();
     c.remaining = integrator.advance(network, velocity, stiffness(), 1).displacement;
     move_lines(c, candidates);

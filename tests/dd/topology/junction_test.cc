@@ -23,8 +23,11 @@ constexpr double length = 200;
 DriverSettings coarse()
 {
   const double b = aluminium.burgers_magnitude;
-  return {
-      {aluminium.mu, aluminium.nu, b}, b, {aluminium.drag, aluminium.drag}, {8, 20, 0.1, 1}, {0.1, 2, 0.2, 1e-4, 30}};
+  return {{aluminium.mu, aluminium.nu, b},
+          b,
+          linear_glide(aluminium.drag, aluminium.drag),
+          {8, 20, 0.1, 1},
+          {0.1, 2, 0.2, 1e-4, 30}};
 }
 
 /// Two crossing lines, the second with its Burgers vector times @p sign.

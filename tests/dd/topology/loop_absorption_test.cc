@@ -3,6 +3,7 @@
 #include "dd/crystal/material.h"
 #include "dd/forces/nodal_forces.h"
 #include "dd/mobility/linear_glide.h"
+#include "dd/mobility/local_velocities.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "tests/dd/topology/topology_fixture.h"
 
@@ -59,7 +60,7 @@ struct LineAndLoop : TopologyFixture
   {
     const ForceSettings force_settings{medium, medium.a, 1e-5, RayDirection::normal};
     const NodalForces forces = compute_nodal_forces(network, force_settings, ForceEnvironment{}, MPI_COMM_SELF);
-    const LinearGlide law{zirconium.drag, zirconium.drag};
+    const LinearGlide law({zirconium.drag, zirconium.drag});
     TopologyContext c = context();
     c.remaining = glide_velocities(network, forces.total, law, nullptr);
     for (Vec3 &v : c.remaining)

@@ -18,7 +18,7 @@ namespace
 {
 const Vec3 b(0.286, 0, 0);
 const IsotropicMedium aluminium{26272, 0.345, 0.286};
-const LinearGlide drag{0.02, 0.02};
+const MobilityPointer drag = linear_glide(0.02, 0.02);
 const ForceSettings force_settings{aluminium, aluminium.a, 1e-6, RayDirection::normal};
 
 /// Splits under a uniform stress; counts how often all forces have been computed.
@@ -236,7 +236,7 @@ TEST(NodeSplitting, TheTrialFeelsTheForcesOfTheNetworkThatItMakes)
   f.network.insert(Segment{i[0], j, trial.burgers, {}});
   f.network.check_invariants();
   const auto forces = compute_nodal_forces(f.network, exact, e, MPI_COMM_SELF).total;
-  const auto velocity = glide_velocities(f.network, forces, drag, nullptr);
+  const auto velocity = glide_velocities(f.network, forces, *drag, nullptr);
   EXPECT_LT((motion[0].force - forces[i[0].value]).norm(), 1e-6 * forces[i[0].value].norm());
   EXPECT_LT((motion[1].force - forces[j.value]).norm(), 1e-6 * forces[j.value].norm());
   EXPECT_LT((motion[0].velocity - velocity[i[0].value]).norm(), 1e-6 * velocity[i[0].value].norm());

@@ -4,6 +4,7 @@
 #include "dd/crystal/slip_systems.h"
 #include "dd/geometry/grain_shape.h"
 #include "dd/microstructure/sources.h"
+#include "dd/mobility/glide_constraints.h"
 #include "dd/mobility/linear_glide.h"
 #include "dd/topology/collisions/continuous_collisions.h"
 #include "dd/topology/motion.h"
@@ -191,7 +192,7 @@ struct RandomNetwork : TopologyFixture
     move_nodes(c, 1);
     const IsotropicMedium aluminium{26500, 0.345, 0.286};
     if (splitting && k % splitting_interval == 0)
-      split_nodes(c, SplittingModel{aluminium, aluminium.a, {0.01, 0.01}},
+      split_nodes(c, SplittingModel{aluminium, aluminium.a, linear_glide(0.01, 0.01)},
                   [k](const Network &n) { return random_forces(n, k); });
     remesh(c);
     swept.clear();

@@ -5,6 +5,8 @@
 #include "dd/forces/line_system.h"
 #include "dd/geometry/surface_mesh_shape.h"
 #include "dd/microstructure/clip.h"
+#include "dd/mobility/linear_glide.h"
+#include "dd/mobility/local_velocities.h"
 #include "tests/dd/geometry/facetted_bodies.h"
 #include "tests/dd/topology/random_networks.h"
 
@@ -319,7 +321,7 @@ struct SurfaceLoops : TopologyFixture
     environment.shape = shape;
     environment.applied = 60 * symmetric_part(stress); // MPa nm times 1/nm
     const auto forces = compute_nodal_forces(network, {aluminium, aluminium.a, 1e-3}, environment, MPI_COMM_SELF);
-    return glide_velocities(network, forces.total, {0.01, 0.01}, shape);
+    return glide_velocities(network, forces.total, *linear_glide(0.01, 0.01), shape);
   }
 
   void step(const std::uint64_t k)
