@@ -1,6 +1,7 @@
 #include "coupling/simulation.h"
 
 #include "coupling/input_error.h"
+#include "dd/integrators/split_forces.h"
 #include "dd/microstructure/clip.h"
 #include "dd/mobility/linear_glide.h"
 #include "dd/topology/collisions/moving_lines.h"
@@ -48,7 +49,7 @@ void install_signal_handlers()
 
 Simulation::Simulation(const Parameters &p, MPI_Comm comm)
     : parameters(p), communicator(comm), dislocations(build_network(p)), far_field(p.far_field),
-      product_plane(product_plane_rule(p.slip_systems())), integrator(p.integrator)
+      product_plane(product_plane_rule(p.slip_systems())), integrator(make_integrator(p.method, p.integrator))
 {
   if (p.mode == Mode::finite)
   {
@@ -163,19 +164,25 @@ IntegratorStep Simulation::move_lines()
   const ForceEnvironment e = environment();
   forces_at_start.clear();
   far_field.begin_step();
-  // The integrator asks first at the start of the step, and last at the end of the one that it accepts.
-  const auto velocity = [&](const Network &n)
-  {
-    forces_at_end = compute_nodal_forces(n, settings, e, communicator).total;
-    if (forces_at_start.empty())
-      forces_at_start = forces_at_end;
-    return glide_velocities(n, forces_at_end, parameters.mobility, e.shape);
-  };
-  std::vector<double> drag(dislocations.node_capacity(), 0.0);
+  SplitForces parts{{settings.medium, settings.core_cutoff_radius, near_pair_tolerance, parameters.near_distance},
+                    e.applied,
+                    std::vector<double>(dislocations.node_capacity(), 0.0),
+                    &forces_at_end.segment_ends,
+                    [&](const Network &n, const NodeIndex i, const Vec3 &force)
+                    { return glide_velocity(n, i, force, parameters.mobility, e.shape); }};
   for (const NodeIndex i : dislocations.nodes())
-    drag[i.value] = nodal_drag(dislocations, i, parameters.mobility);
-  const double stiffness = line_tension_stiffness(dislocations, largest_line_tension(parameters), drag);
-  return integrator.advance(dislocations, velocity, stiffness, time_left());
+    parts.drag[i.value] = nodal_drag(dislocations, i, parameters.mobility);
+  // The integrator asks first at the start of the step, and last at its end as it is predicted or accepted.
+  const EquationOfMotion motion{
+      [&](const Network &n)
+      {
+        forces_at_end = compute_nodal_forces(n, settings, e, communicator);
+        if (forces_at_start.empty())
+          forces_at_start = forces_at_end.total;
+        return glide_velocities(n, forces_at_end.total, parameters.mobility, e.shape);
+      },
+      line_tension_stiffness_of_nodes(dislocations, largest_line_tension(parameters), parts.drag), &parts};
+  return integrator->advance(dislocations, motion, time_left());
 }
 
 TopologyContext Simulation::topology_context(std::vector<Vec3> displacement)
@@ -190,10 +197,10 @@ TopologyContext Simulation::topology_context(std::vector<Vec3> displacement)
           std::move(displacement)};
 }
 
-void Simulation::change_topology(TopologyContext &context)
+void Simulation::change_topology(TopologyContext &context, const std::vector<MotionPart> &parts)
 {
   const Timing::Scope scope(timing, "topology");
-  ddfem::move_lines(context, candidates);
+  ddfem::move_lines(context, candidates, parts);
   SplittingModel model{parameters.medium, parameters.core_cutoff_radius, parameters.mobility};
   model.applied = applied_stress();
   // The network has changed since the last solve, but its correction field has not: it is read at the new points.
@@ -264,9 +271,10 @@ RunEnd Simulation::run(RunOutput &output)
     step = move_lines();
     LineWork work = work_of_step(step);
     TopologyContext context = topology_context(step.displacement);
-    change_topology(context);
+    change_topology(context, step.parts);
     book(work);
-    time += step.dt;
+    // No rounding at the end of the run.
+    time = step.dt == parameters.stop.final_time - time ? parameters.stop.final_time : time + step.dt;
     ++step_number;
     check_consistency();
     update_correction(work);

@@ -64,17 +64,19 @@ Vec3 across_line(const Network &network, const NodeIndex i, const Vec3 &velocity
   return velocity - chord * (chord.dot(velocity) / chord.squaredNorm());
 }
 
+Vec3 glide_velocity(const Network &network, const NodeIndex i, const Vec3 &force, const LinearGlide &law,
+                    const GrainShape *shape)
+{
+  const double drag = nodal_drag(network, i, law);
+  return drag > 0 ? across_line(network, i, glide_projector(network, i, shape) * force / drag) : Vec3(Vec3::Zero());
+}
+
 std::vector<Vec3> glide_velocities(const Network &network, const std::vector<Vec3> &force, const LinearGlide &law,
                                    const GrainShape *shape)
 {
   std::vector<Vec3> velocity(network.node_capacity(), Vec3::Zero());
-  network.for_each_node(
-      [&](const NodeIndex i)
-      {
-        const double drag = nodal_drag(network, i, law);
-        if (drag > 0)
-          velocity[i.value] = across_line(network, i, glide_projector(network, i, shape) * force[i.value] / drag);
-      });
+  network.for_each_node([&](const NodeIndex i)
+                        { velocity[i.value] = glide_velocity(network, i, force[i.value], law, shape); });
   return velocity;
 }
 } // namespace ddfem

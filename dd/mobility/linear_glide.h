@@ -36,6 +36,11 @@ double nodal_drag(const Network &network, NodeIndex i, const LinearGlide &law);
 /// keep theirs.
 Vec3 across_line(const Network &network, NodeIndex i, const Vec3 &velocity);
 
+/// Local velocity v = P f / (sum over arms of B(theta) L / 2) of a node that feels @p force (MPa nm^2), nm/ns; of a discretisation
+/// node the part across the line.
+Vec3 glide_velocity(const Network &network, NodeIndex i, const Vec3 &force, const LinearGlide &law,
+                    const GrainShape *shape);
+
 /// Local nodal velocities v = P f / (sum over arms of B(theta) L / 2), nm/ns, indexed by NodeIndex::value; of discretisation
 /// nodes the part across the line.
 /// @p force: nodal forces, MPa nm^2.

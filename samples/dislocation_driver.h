@@ -1,10 +1,12 @@
 // The time loop without finite elements: forces, motion, collisions, node splitting, remeshing.
 #pragma once
 
+#include "dd/common/stopwatch.h"
 #include "dd/crystal/slip_systems.h"
 #include "dd/forces/far_field_cache.h"
 #include "dd/forces/nodal_forces.h"
-#include "dd/integrators/stabilised_runge_kutta.h"
+#include "dd/integrators/make_integrator.h"
+#include "dd/integrators/split_forces.h"
 #include "dd/mobility/linear_glide.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/node_splitting.h"
@@ -29,6 +31,8 @@ struct DriverSettings
   IntegratorSettings integrator;
   double pair_tolerance = 1e-5;
   SummationSettings summation = {};
+  IntegratorKind method = IntegratorKind::stabilised;
+  double near_distance = 0.0; ///< of subcycling, nm
 };
 
 /// A network in an infinite body or, with @p cell, in a periodic one.
@@ -36,8 +40,8 @@ class DislocationDriver
 {
 public:
   DislocationDriver(DriverSettings driver_settings, const SlipSystems &systems, const PeriodicCell *periodic = nullptr)
-      : settings(std::move(driver_settings)), cell(periodic), product_plane(product_plane_rule(systems)),
-        integrator(settings.integrator)
+      : settings(std::move(driver_settings)), integrator(make_integrator(settings.method, integrator_settings())),
+        cell(periodic), product_plane(product_plane_rule(systems))
   {
     if (cell)
     {
@@ -46,23 +50,47 @@ public:
     }
   }
 
-  /// One step of at most @p dt_limit ns.
-  IntegratorStep step(const double dt_limit)
+  /// Those of the driver, with paths that collisions see.
+  IntegratorSettings integrator_settings() const
+  {
+    IntegratorSettings s = settings.integrator;
+    s.max_deviation = settings.topology.collision_radius;
+    return s;
+  }
+
+  /// The motion of one step of at most @p dt_limit ns, with the network left in place.
+  IntegratorStep integrate(const double dt_limit)
   {
     if (far_field)
       far_field->begin_step();
-    const auto velocity = [&](const Network &n)
-    { return glide_velocities(n, forces(n).total, settings.mobility, nullptr); };
-    std::vector<double> drag(network.node_capacity(), 0.0);
+    SplitForces parts{{settings.medium, settings.core_cutoff_radius, near_pair_tolerance, settings.near_distance},
+                      applied,
+                      std::vector<double>(network.node_capacity(), 0.0),
+                      &last_forces.segment_ends,
+                      [&](const Network &n, const NodeIndex i, const Vec3 &force)
+                      { return glide_velocity(n, i, force, settings.mobility, nullptr); }};
     for (const NodeIndex i : network.nodes())
-      drag[i.value] = nodal_drag(network, i, settings.mobility);
-    IntegratorStep taken =
-        integrator.advance(network, velocity, line_tension_stiffness(network, line_tension(), drag), dt_limit);
+      parts.drag[i.value] = nodal_drag(network, i, settings.mobility);
+    const EquationOfMotion motion{[&](const Network &n)
+                                  {
+                                    last_forces = forces(n);
+                                    return glide_velocities(n, last_forces.total, settings.mobility, nullptr);
+                                  },
+                                  line_tension_stiffness_of_nodes(network, line_tension(), parts.drag), &parts};
+    return integrator->advance(network, motion, dt_limit);
+  }
+
+  /// One step of at most @p dt_limit ns.
+  IntegratorStep step(const double dt_limit)
+  {
+    IntegratorStep taken = integrate(dt_limit);
+    const Stopwatch watch(topology_seconds);
     TopologyContext context = this->context(taken.displacement);
-    move_lines(context, candidates);
+    move_lines(context, candidates, taken.parts);
     split_nodes(context, splitting(), [&](const Network &n) { return forces(n); });
     if (remeshing)
       remesh(context);
+    strain_volume += plastic_strain_volume(swept);
     swept.clear();
     if (network.node_capacity() > 2 * network.n_nodes() + 64)
       network.clean();
@@ -137,8 +165,11 @@ public:
   SymTensor applied = SymTensor::Zero(); ///< MPa
   double time = 0;                       ///< ns
   TopologyCounts counts;
+  SymTensor strain_volume = SymTensor::Zero(); ///< plastic strain times volume so far, nm^3
+  double topology_seconds = 0;                 ///< processor time of collisions, splitting and remeshing
   bool remeshing = true;
   FarFieldCache *far_field = nullptr;
+  std::unique_ptr<Integrator> integrator;
 
 private:
   double line_tension() const
@@ -155,7 +186,7 @@ private:
   const PeriodicCell *cell;
   std::unique_ptr<PeriodicImages> images;
   ProductPlane product_plane;
-  StabilisedRungeKutta integrator;
+  NodalForces last_forces;
   CandidateList candidates;
   SweptArea swept;
 };
