@@ -42,7 +42,7 @@ double LoadWithinStep::stress_change(const Network &moved, const double time) co
   return stress_change(-work_on_lines(moved, unit.points, unit.stress, back), time);
 }
 
-void LoadWithinStep::add_to(std::vector<Vec3> &force, const Network &moved, const double change) const
+void LoadWithinStep::add_to(NodalForces &forces, const Network &moved, const double change) const
 {
   if (change == 0)
     return;
@@ -51,12 +51,17 @@ void LoadWithinStep::add_to(std::vector<Vec3> &force, const Network &moved, cons
   {
     const Vec3 line = moved.direction(s), &b = moved.burgers(s);
     const auto fractions = unit.points.fractions(i), weights = unit.points.weights(i);
+    SegmentForces ends{Vec3::Zero(), Vec3::Zero()};
     for (std::size_t q = 0; q < fractions.size(); ++q)
     {
       const Vec3 f = change * weights[q] * contract(unit.stress[unit.points.begin_of(i) + q], b).cross(line);
-      force[moved.start(s).value] += (1 - fractions[q]) * f;
-      force[moved.end(s).value] += fractions[q] * f;
+      ends.start += (1 - fractions[q]) * f;
+      ends.end += fractions[q] * f;
     }
+    forces.segment_ends[s.value].start += ends.start;
+    forces.segment_ends[s.value].end += ends.end;
+    forces.total[moved.start(s).value] += ends.start;
+    forces.total[moved.end(s).value] += ends.end;
     ++i;
   }
 }
@@ -76,9 +81,9 @@ double LoadWithinStep::stiffness(const Network &network, const VelocitySolver &v
   if (unit.fall_per_work == 0)
     return 0;
   // The change is of rank one: d(velocity)/d(position) = - c A^-1 g g^T with the forces g of a unit of nominal stress.
-  std::vector<Vec3> unit_force(network.node_capacity(), Vec3::Zero());
-  add_to(unit_force, network, 1.0);
+  NodalForces of_unit = no_forces(network);
+  add_to(of_unit, network, 1.0);
   return std::abs(stress_change(1.0, 0.0) - stress_change(0.0, 0.0)) *
-         velocities.largest_power(network, unit_force, shape);
+         velocities.largest_power(network, of_unit.total, shape);
 }
 } // namespace ddfem::coupling

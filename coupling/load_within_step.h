@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupling/loading.h"
+#include "dd/forces/nodal_forces.h"
 #include "dd/forces/segment_points.h"
 #include "dd/mobility/velocity_solver.h"
 #include "dd/network/network.h"
@@ -36,8 +37,8 @@ public:
   /// Change of the nominal stress (MPa) since the start, @p time (ns) after it and with the lines at @p moved: the network of the start
   /// with other positions.
   double stress_change(const Network &moved, double time) const;
-  /// Adds to nodal forces (MPa nm^2, by NodeIndex::value) those of a change of the nominal stress (MPa).
-  void add_to(std::vector<Vec3> &force, const Network &moved, double change) const;
+  /// Adds to the forces on ends of segments and on nodes those of a change of the nominal stress (MPa).
+  void add_to(NodalForces &forces, const Network &moved, double change) const;
   /// The part of the work on the lines (MPa nm^3) during @p displacement (nm, by NodeIndex::value) in a step of @p dt (ns) that the
   /// change of the stress adds, by the trapezoidal rule.
   double work_of_change(const Network &network, const std::vector<Vec3> &displacement, double dt) const;

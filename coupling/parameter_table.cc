@@ -339,6 +339,20 @@ void add_numerics(std::vector<ParameterEntry> &t)
                "The run ends when the norm of the plastic strain tensor reaches this; 0: never."});
   t.push_back({s, "Equilibrium speed", "0", not_negative(), "m/s",
                "The run ends when no node is faster than this (from the second step on); 0: never."});
+  t.push_back(
+      {s, "Integrator", "stabilised",
+       one_of("forward Euler|trapezoid|Bogacki-Shampine|Dormand-Prince|stabilised|subcycling"), "",
+       "Stabilised: second-order Runge-Kutta-Chebyshev, whose stages follow the stiffness of the lines. Subcycling: "
+       "the "
+       "forces of near segments are integrated with steps of their own, those of the others evaluated twice per step; "
+       "for large networks. Trapezoid with corrector iterations, explicit Runge-Kutta pairs of order 3 and 5, and "
+       "forward Euler: "
+       "for comparison."});
+  t.push_back({s, "Near distance", "0", not_negative(), "m",
+               "Segments no farther apart than this are near for subcycling; 0: 3 L_min."});
+  t.push_back(
+      {s, "Relative tolerance", "0", between(0, 0.5), "",
+       "Part of the shortest segment of a node that its position may err by per step, besides Position tolerance."});
   t.push_back({s, "Initial step", "1e-13", positive(), "s", "First time step."});
   t.push_back({s, "Maximum step", "1e-9", positive(), "s", "Largest time step."});
   t.push_back({s, "Position tolerance", "0", not_negative(), "m",

@@ -260,12 +260,22 @@ void read_discretisation(const InputDeck &deck, Parameters &p)
 
 void read_time_stepping(const InputDeck &deck, Parameters &p)
 {
+  const std::string method = deck.text("Time stepping/Integrator");
+  for (std::size_t k = 0; k < n_integrators; ++k)
+    if (method == name_of(static_cast<IntegratorKind>(k)))
+      p.method = static_cast<IntegratorKind>(k);
+  if (p.method == IntegratorKind::subcycling && p.velocities.method == VelocityMethod::consistent)
+    deck.reject("Time stepping/Integrator",
+                "subcycling moves single nodes: it needs Mobility/Velocities = local, or take another integrator");
+  p.near_distance = number_or(deck, "Time stepping/Near distance", units::metre, 3 * p.topology.min_segment);
   auto &i = p.integrator;
   i.error_tolerance = number_or(deck, "Time stepping/Position tolerance", units::metre, p.topology.min_segment / 50);
+  i.relative_tolerance = deck.number("Time stepping/Relative tolerance");
   i.max_displacement = number_or(deck, "Time stepping/Maximum displacement", units::metre, p.topology.min_segment / 2);
   i.max_step = deck.number("Time stepping/Maximum step") * units::second;
   i.initial_step = deck.number("Time stepping/Initial step") * units::second;
   i.max_stages = deck.integer("Time stepping/Maximum stages");
+  i.max_deviation = p.topology.collision_radius;
   if (i.initial_step > i.max_step)
     deck.reject("Time stepping/Initial step", "must not exceed the maximum step");
   p.stop.final_time = deck.number("Time stepping/Final time") * units::second;

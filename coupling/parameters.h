@@ -10,7 +10,7 @@
 #include "dd/forces/far_field_cache.h"
 #include "dd/forces/nodal_forces.h"
 #include "dd/geometry/periodic_cell.h"
-#include "dd/integrators/stabilised_runge_kutta.h"
+#include "dd/integrators/make_integrator.h"
 #include "dd/microstructure/sources.h"
 #include "dd/mobility/velocity_solver.h"
 #include "dd/topology/topology_context.h"
@@ -107,7 +107,9 @@ struct Parameters
   double core_cutoff_radius = 0; ///< nm
   double pair_tolerance = 0;
   RefreshSettings far_field;
+  IntegratorKind method = IntegratorKind::stabilised;
   IntegratorSettings integrator;
+  double near_distance = 0; ///< of segments whose forces subcycling integrates with shorter steps, nm
   StopCriteria stop;
   OutputParameters output;
 

@@ -1,6 +1,7 @@
 #include "coupling/simulation.h"
 
 #include "coupling/input_error.h"
+#include "dd/integrators/split_forces.h"
 #include "dd/microstructure/clip.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/growth.h"
@@ -48,7 +49,7 @@ void install_signal_handlers()
 Simulation::Simulation(const Parameters &p, MPI_Comm comm)
     : parameters(p), communicator(comm), dislocations(build_network(p)), far_field(p.far_field),
       product_plane(product_plane_rule(p.slip_systems())), velocities(p.mobility, p.velocities),
-      integrator(p.integrator)
+      integrator(make_integrator(p.method, p.integrator))
 {
   if (p.mode == Mode::finite)
   {
@@ -164,18 +165,27 @@ IntegratorStep Simulation::move_lines()
   forces_at_start.clear();
   far_field.begin_step();
   load_in_step = load_within_step();
-  // The integrator asks first at the start of the step, and last at the end of the one that it accepts.
-  const auto velocity = [&](const Network &n, const double time_in_step)
-  {
-    forces_at_end = compute_nodal_forces(n, settings, e, communicator).total;
-    load_in_step.add_to(forces_at_end, n, load_in_step.stress_change(n, time_in_step));
-    if (forces_at_start.empty())
-      forces_at_start = forces_at_end;
-    return velocities.velocities(n, forces_at_end, e.shape);
-  };
-  const double stiffness = velocities.stiffness(dislocations, largest_line_tension(parameters), e.shape) +
-                           load_in_step.stiffness(dislocations, velocities, e.shape);
-  return integrator.advance(dislocations, velocity, stiffness, time_left());
+  const SplitForces parts{{settings.medium, settings.core_cutoff_radius, near_pair_tolerance, parameters.near_distance},
+                          e.applied,
+                          velocities.drag_of_nodes(dislocations),
+                          &forces_at_end.segment_ends,
+                          [&](const Network &n, const NodeIndex i, const Vec3 &force)
+                          { return velocities.velocity_of_node(n, i, force, e.shape); }};
+  std::vector<double> stiffness = velocities.stiffness(dislocations, largest_line_tension(parameters), e.shape);
+  const double of_load = load_in_step.stiffness(dislocations, velocities, e.shape);
+  for (double &rate : stiffness)
+    rate += rate > 0 ? of_load : 0.0;
+  // The integrator asks first at the start of the step, and last at its end as it is predicted or accepted.
+  const EquationOfMotion motion{[&](const Network &n, const double time_in_step)
+                                {
+                                  forces_at_end = compute_nodal_forces(n, settings, e, communicator);
+                                  load_in_step.add_to(forces_at_end, n, load_in_step.stress_change(n, time_in_step));
+                                  if (forces_at_start.empty())
+                                    forces_at_start = forces_at_end.total;
+                                  return velocities.velocities(n, forces_at_end.total, e.shape);
+                                },
+                                std::move(stiffness), &parts};
+  return integrator->advance(dislocations, motion, time_left());
 }
 
 TopologyContext Simulation::topology_context(std::vector<Vec3> displacement)
@@ -190,10 +200,10 @@ TopologyContext Simulation::topology_context(std::vector<Vec3> displacement)
           std::move(displacement)};
 }
 
-void Simulation::change_topology(TopologyContext &context)
+void Simulation::change_topology(TopologyContext &context, const std::vector<MotionPart> &parts)
 {
   const Timing::Scope scope(timing, "topology");
-  ddfem::move_lines(context, candidates);
+  ddfem::move_lines(context, candidates, parts);
   SplittingModel model{parameters.medium, parameters.core_cutoff_radius, parameters.mobility};
   model.applied = applied_stress();
   // The network has changed since the last solve, but its correction field has not: it is read at the new points.
@@ -264,9 +274,10 @@ RunEnd Simulation::run(RunOutput &output)
     step = move_lines();
     LineWork work = work_of_step(step);
     TopologyContext context = topology_context(step.displacement);
-    change_topology(context);
+    change_topology(context, step.parts);
     book(work);
-    time += step.dt;
+    // No rounding at the end of the run.
+    time = step.dt == parameters.stop.final_time - time ? parameters.stop.final_time : time + step.dt;
     ++step_number;
     check_consistency();
     update_correction(work);

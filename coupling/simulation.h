@@ -89,7 +89,7 @@ private:
   LineWork work_of_step(const IntegratorStep &step) const;
   double work_on_swept_area() const;
   IntegratorStep move_lines();
-  void change_topology(TopologyContext &context);
+  void change_topology(TopologyContext &context, const std::vector<MotionPart> &parts);
   void book(LineWork &work);
   double axial_plastic_strain() const;
   double reference_volume() const;
@@ -113,7 +113,7 @@ private:
   OpenLines initial_open_lines;
   ProductPlane product_plane;
   VelocitySolver velocities;
-  StabilisedRungeKutta integrator;
+  std::unique_ptr<Integrator> integrator;
   SegmentField correction; ///< of the last solve, at the segments
   std::unique_ptr<CorrectionUpdate> update;
   GrainSolution solution;
@@ -124,7 +124,8 @@ private:
   Loading loading;
   LoadWithinStep load_in_step; ///< of the present step
   EnergyBalance energy;
-  std::vector<Vec3> forces_at_start, forces_at_end; ///< of the lines in the last step, MPa nm^2, by NodeIndex::value
+  std::vector<Vec3> forces_at_start; ///< of the lines in the last step, MPa nm^2, by NodeIndex::value
+  NodalForces forces_at_end;         ///< likewise
   CandidateList candidates;
   SweptArea swept;
   TopologyCounts counts;

@@ -118,7 +118,7 @@ void Simulation::balance_energy()
 LineWork Simulation::work_of_step(const IntegratorStep &step) const
 {
   LineWork work;
-  work.total = work_of_nodal_forces(dislocations, forces_at_start, forces_at_end, step.displacement);
+  work.total = work_of_nodal_forces(dislocations, forces_at_start, forces_at_end.total, step.displacement);
   if (finite_grain)
     work.external = work_on_lines(dislocations, correction.points, correction.without_images, step.displacement);
   else

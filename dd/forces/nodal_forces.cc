@@ -140,6 +140,14 @@ const char *name_of(const ForceContribution c)
   return names[static_cast<std::size_t>(c)];
 }
 
+NodalForces no_forces(const Network &network)
+{
+  NodalForces forces;
+  forces.total.resize(network.node_capacity(), Vec3::Zero());
+  forces.segment_ends.resize(network.segment_capacity(), {Vec3::Zero(), Vec3::Zero()});
+  return forces;
+}
+
 NodalForces compute_nodal_forces(const Network &network, const ForceSettings &settings,
                                  const ForceEnvironment &environment, MPI_Comm comm, const bool with_contributions)
 {
@@ -169,8 +177,7 @@ NodalForces compute_nodal_forces(const Network &network, const ForceSettings &se
   else
     sums = on_all_lines(shares, comm, [&](const std::size_t i) { return total_of(contributions(i)); });
 
-  NodalForces forces;
-  forces.segment_ends.resize(network.segment_capacity(), {Vec3::Zero(), Vec3::Zero()});
+  NodalForces forces = no_forces(network);
   std::vector<std::size_t> line_of(network.segment_capacity());
   std::size_t position = 0;
   for (const SegmentIndex s : network.segments())

@@ -63,6 +63,9 @@ struct NodalForces
   std::vector<SegmentForces> segment_ends;
 };
 
+/// Zero on all nodes and segments, without contributions.
+NodalForces no_forces(const Network &network);
+
 /// Computes the nodal forces, by direct summation over all pairs or, with many segments, by fast multipoles; in the second
 /// case the forces of rays and images are part of ForceContribution::pairs. The work is divided among the ranks of @p comm and
 /// the threads; every force is a sum in fixed order, so the result is bitwise the same on any number of either.

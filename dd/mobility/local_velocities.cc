@@ -104,17 +104,20 @@ double nodal_drag(const Network &network, const NodeIndex i, const MobilityLaw &
   return drag;
 }
 
+Vec3 glide_velocity(const Network &network, const NodeIndex i, const Vec3 &force, const MobilityLaw &law,
+                    const GrainShape *shape, const double sliding_drag)
+{
+  if (network.degree(i) == 0)
+    return Vec3::Zero();
+  return local_velocity(law, arms_of(network, i), directions_of_motion(network, i, law, shape), force, sliding_drag);
+}
+
 std::vector<Vec3> glide_velocities(const Network &network, const std::vector<Vec3> &force, const MobilityLaw &law,
                                    const GrainShape *shape, const double sliding_drag)
 {
   std::vector<Vec3> velocity(network.node_capacity(), Vec3::Zero());
-  network.for_each_node(
-      [&](const NodeIndex i)
-      {
-        if (network.degree(i) > 0)
-          velocity[i.value] = local_velocity(law, arms_of(network, i), directions_of_motion(network, i, law, shape),
-                                             force[i.value], sliding_drag);
-      });
+  network.for_each_node([&](const NodeIndex i)
+                        { velocity[i.value] = glide_velocity(network, i, force[i.value], law, shape, sliding_drag); });
   return velocity;
 }
 } // namespace ddfem

@@ -37,6 +37,10 @@ double nodal_drag(const Network &network, NodeIndex i, const MobilityLaw &law);
 /// keeps the remeshing busy. Other nodes keep all that are allowed.
 Mat3 directions_of_motion(const Network &network, NodeIndex i, const MobilityLaw &law, const GrainShape *shape);
 
+/// Local velocity, nm/ns, of one node under the force @p force, MPa nm^2: see glide_velocities().
+Vec3 glide_velocity(const Network &network, NodeIndex i, const Vec3 &force, const MobilityLaw &law,
+                    const GrainShape *shape, double sliding_drag = 1);
+
 /// Local nodal velocities, nm/ns, by NodeIndex::value: as if the neighbours moved like the node itself (Durocher, thesis,
 /// Bordeaux 2018, eqs. I.17 and I.18); of discretisation nodes across the line.
 /// @p force: nodal forces, MPa nm^2; @p sliding_drag: as in local_velocity().

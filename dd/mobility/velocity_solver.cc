@@ -1,7 +1,7 @@
 #include "dd/mobility/velocity_solver.h"
 
-#include <algorithm>
 #include <numeric>
+#include <stdexcept>
 
 namespace ddfem
 {
@@ -56,18 +56,33 @@ std::vector<double> VelocitySolver::rates(const Network &network, const GrainSha
   return of_node;
 }
 
-double VelocitySolver::stiffness(const Network &network, const double tension, const GrainShape *shape) const
+Vec3 VelocitySolver::velocity_of_node(const Network &network, const NodeIndex i, const Vec3 &force,
+                                      const GrainShape *shape) const
 {
-  const std::vector<double> of_node =
-      rates(network, shape,
-            [&](NodeIndex, const std::vector<NodalArm> &arms)
-            {
-              Mat3 k = Mat3::Zero();
-              for (const NodalArm &arm : arms)
-                k += tension / arm.length * (Mat3::Identity() - arm.line.direction * arm.line.direction.transpose());
-              return Mat3(2 * k);
-            });
-  return of_node.empty() ? 0.0 : *std::max_element(of_node.begin(), of_node.end());
+  if (settings.method == VelocityMethod::consistent)
+    throw std::logic_error("consistent velocities are those of all nodes");
+  return glide_velocity(network, i, force, *mobility, shape, settings.sliding_drag);
+}
+
+std::vector<double> VelocitySolver::drag_of_nodes(const Network &network) const
+{
+  std::vector<double> drag(network.node_capacity(), 0.0);
+  for (const NodeIndex i : network.nodes())
+    drag[i.value] = nodal_drag(network, i, *mobility);
+  return drag;
+}
+
+std::vector<double> VelocitySolver::stiffness(const Network &network, const double tension,
+                                              const GrainShape *shape) const
+{
+  return rates(network, shape,
+               [&](NodeIndex, const std::vector<NodalArm> &arms)
+               {
+                 Mat3 k = Mat3::Zero();
+                 for (const NodalArm &arm : arms)
+                   k += tension / arm.length * (Mat3::Identity() - arm.line.direction * arm.line.direction.transpose());
+                 return Mat3(2 * k);
+               });
 }
 
 double VelocitySolver::largest_power(const Network &network, const std::vector<Vec3> &force,

@@ -36,11 +36,17 @@ public:
   /// Velocities, nm/ns, by NodeIndex::value, for nodal forces @p force, MPa nm^2. @p shape: null without a surface.
   std::vector<Vec3> velocities(const Network &network, const std::vector<Vec3> &force, const GrainShape *shape);
 
-  /// Upper bound, 1/ns, of the spectral radius of d(velocity)/d(position) for lines of tension @p tension, MPa nm^2. With K_i = T sum (1/L)
+  /// Velocity (nm/ns) of one node under the force @p force (MPa nm^2). Throws std::logic_error for consistent velocities, of which no node has one
+  /// of its own.
+  Vec3 velocity_of_node(const Network &network, NodeIndex i, const Vec3 &force, const GrainShape *shape) const;
+  /// nodal_drag(), MPa ns nm, by NodeIndex::value.
+  std::vector<double> drag_of_nodes(const Network &network) const;
+
+  /// Upper bounds by node, 1/ns, of the spectral radius of d(velocity)/d(position) for lines of tension @p tension, MPa nm^2. With K_i = T sum (1/L)
   /// (1 - xi xi) and A_i = sum (L/2) B (1 - xi xi + beta xi xi) over the arms of node i, in the directions in which it can
-  /// move, local velocities have max over nodes of 2 lambda(A_i^-1 K_i), since a segment's stiffness T/L [1 -1; -1 1] is not more than twice its
+  /// move, local velocities have 2 lambda(A_i^-1 K_i), since a segment's stiffness T/L [1 -1; -1 1] is not more than twice its
   /// diagonal. Consistent ones have three times as much: B L [1/3 1/6; 1/6 1/3] is not less than B L/6.
-  double stiffness(const Network &network, double tension, const GrainShape *shape) const;
+  std::vector<double> stiffness(const Network &network, double tension, const GrainShape *shape) const;
 
   /// Power of nodal forces (MPa nm^2) on the velocities that they alone would give with the drag() of the lines, MPa nm^3/ns: sum of f . A_i^-1 f;
   /// for consistent velocities three times that, an upper bound.

@@ -75,9 +75,9 @@ private:
     const LoadWithinStep load(network, unit, loading, response());
     const auto velocity = [&](const Network &n, const double time_in_step)
     {
-      std::vector<Vec3> force(n.node_capacity(), Vec3::Zero());
-      load.add_to(force, n, stress() + (follows ? load.stress_change(n, time_in_step) : 0));
-      return velocities.velocities(n, force, nullptr);
+      NodalForces forces = no_forces(n);
+      load.add_to(forces, n, stress() + (follows ? load.stress_change(n, time_in_step) : 0));
+      return velocities.velocities(n, forces.total, nullptr);
     };
     const double stiffness = load.stiffness(network, velocities, nullptr);
     EXPECT_NEAR(stiffness * relaxation_time, 1, 1e-9);

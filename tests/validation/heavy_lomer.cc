@@ -1,8 +1,8 @@
 // The Lomer-Cottrell lock (Durocher, thesis, Bordeaux 2018, table IV.2) and the map of Lomer reactions. Minutes.
 //
 // The rows `lock ...` and `map ...` of the output are drawn by examples/lomer_cottrell_lock/plot.py.
-#include "../dd/topology/dislocation_driver.h"
 #include "dd/crystal/material.h"
+#include "samples/dislocation_driver.h"
 #include "support.h"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 #include "dd/crystal/material.h"
 #include "dd/forces/far_field_cache.h"
 #include "dd/forces/nodal_forces.h"
+#include "samples/dislocation_driver.h"
 #include "samples/systems_of_lines.h"
 #include "samples/values.h"
-#include "tests/dd/topology/dislocation_driver.h"
 #include "tests/dd/topology/random_networks.h"
 
 #include <gtest/gtest.h>

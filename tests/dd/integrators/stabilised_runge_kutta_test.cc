@@ -138,14 +138,5 @@ TEST(StabilisedRungeKutta, NonFiniteVelocityNamesTheNode)
     EXPECT_NE(std::string(e.what()).find("node 3"), std::string::npos);
   }
 }
-
-TEST(StabilisedRungeKutta, StiffnessBoundIsTheLargestEigenvalueOfAUniformChain)
-{
-  const Network n = bowed_line();
-  const double drag = 1.0, h = n.length(n.segments()[0]);
-  const std::vector<double> nodal(n.node_capacity(), drag * h);
-  // The first arms are the longest of the bowed line, so the bound can only be larger.
-  EXPECT_GE(line_tension_stiffness(n, 5.0, nodal), 4 * 5.0 / (drag * h * h));
-}
 } // namespace
 } // namespace ddfem

@@ -266,8 +266,10 @@ TEST(Velocities, StiffnessBoundsTheRateOfTheFastestMode)
     const double fastest = modes.eigenvalues().maxCoeff();
     const VelocitySolver solver(linear_glide(drag, drag),
                                 {.method = consistent ? VelocityMethod::consistent : VelocityMethod::local});
-    EXPECT_GE(solver.stiffness(n, tension, nullptr), fastest);
-    EXPECT_LE(solver.stiffness(n, tension, nullptr), 4 * fastest); // stages grow with its root
+    const std::vector<double> bounds = solver.stiffness(n, tension, nullptr);
+    const double bound = *std::max_element(bounds.begin(), bounds.end());
+    EXPECT_GE(bound, fastest);
+    EXPECT_LE(bound, 4 * fastest); // stages grow with its root
   }
 }
 } // namespace

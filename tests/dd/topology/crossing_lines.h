@@ -5,7 +5,7 @@
 #include "dd/crystal/product_plane.h"
 #include "dd/elasticity/segment_energy.h"
 #include "dd/microstructure/sources.h"
-#include "dislocation_driver.h"
+#include "samples/dislocation_driver.h"
 
 #include <gtest/gtest.h>
 

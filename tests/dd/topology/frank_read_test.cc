@@ -3,7 +3,7 @@
 #include "dd/forces/nodal_forces.h"
 #include "dd/integrators/stabilised_runge_kutta.h"
 #include "dd/mobility/linear_glide.h"
-#include "dd/mobility/local_velocities.h"
+#include "dd/mobility/velocity_solver.h"
 #include "dd/topology/collisions/moving_lines.h"
 #include "dd/topology/node_splitting.h"
 #include "dd/topology/remesh.h"
@@ -61,12 +61,10 @@ struct SourceInGrain : TopologyFixture
 
   double stiffness() const
   {
-    std::vector<double> drag(network.node_capacity(), 0.0);
-    for (const NodeIndex i : network.nodes())
-      drag[i.value] = nodal_drag(network, i, *law);
     const double tension = medium.mu * b * b * (1 + medium.nu) / (4 * std::numbers::pi * (1 - medium.nu)) *
                            std::log(2 * settings.max_segment / medium.a);
-    return line_tension_stiffness(network, tension, drag);
+    const std::vector<double> bounds = VelocitySolver(law).stiffness(network, tension, &box);
+    return *std::max_element(bounds.begin(), bounds.end());
   }
 
   void step()

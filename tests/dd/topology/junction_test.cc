@@ -3,7 +3,7 @@
 // Phys. Rev. Lett. 83 (1999) 4574.
 #include "dd/crystal/material.h"
 #include "dd/microstructure/sources.h"
-#include "dislocation_driver.h"
+#include "samples/dislocation_driver.h"
 
 #include <gtest/gtest.h>
 

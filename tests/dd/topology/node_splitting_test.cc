@@ -1,7 +1,7 @@
 #include "dd/crystal/material.h"
 #include "dd/topology/line_operations.h"
 #include "dd/topology/node_splitting.h"
-#include "dislocation_driver.h"
+#include "samples/dislocation_driver.h"
 #include "samples/values.h"
 #include "topology_fixture.h"
 

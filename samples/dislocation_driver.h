@@ -1,10 +1,12 @@
 // The time loop without finite elements: forces, motion, collisions, node splitting, remeshing.
 #pragma once
 
+#include "dd/common/stopwatch.h"
 #include "dd/crystal/slip_systems.h"
 #include "dd/forces/far_field_cache.h"
 #include "dd/forces/nodal_forces.h"
-#include "dd/integrators/stabilised_runge_kutta.h"
+#include "dd/integrators/make_integrator.h"
+#include "dd/integrators/split_forces.h"
 #include "dd/mobility/linear_glide.h"
 #include "dd/mobility/velocity_solver.h"
 #include "dd/topology/collisions/moving_lines.h"
@@ -31,6 +33,8 @@ struct DriverSettings
   double pair_tolerance = 1e-5;
   SummationSettings summation = {};
   VelocitySettings velocities = {};
+  IntegratorKind method = IntegratorKind::stabilised;
+  double near_distance = 0.0; ///< of subcycling, nm
 };
 
 /// A network in an infinite body or, with @p cell, in a periodic one.
@@ -38,8 +42,8 @@ class DislocationDriver
 {
 public:
   DislocationDriver(DriverSettings driver_settings, const SlipSystems &systems, const PeriodicCell *periodic = nullptr)
-      : settings(std::move(driver_settings)), cell(periodic), product_plane(product_plane_rule(systems)),
-        solver(settings.mobility, settings.velocities), integrator(settings.integrator)
+      : settings(std::move(driver_settings)), integrator(make_integrator(settings.method, integrator_settings())),
+        cell(periodic), product_plane(product_plane_rule(systems)), solver(settings.mobility, settings.velocities)
   {
     if (cell)
     {
@@ -48,19 +52,45 @@ public:
     }
   }
 
-  /// One step of at most @p dt_limit ns.
-  IntegratorStep step(const double dt_limit)
+  /// Those of the driver, with paths that collisions see.
+  IntegratorSettings integrator_settings() const
+  {
+    IntegratorSettings s = settings.integrator;
+    s.max_deviation = settings.topology.collision_radius;
+    return s;
+  }
+
+  /// The motion of one step of at most @p dt_limit ns, with the network left in place.
+  IntegratorStep integrate(const double dt_limit)
   {
     if (far_field)
       far_field->begin_step();
-    const auto velocity = [&](const Network &n) { return solver.velocities(n, forces(n).total, nullptr); };
-    IntegratorStep taken =
-        integrator.advance(network, velocity, solver.stiffness(network, line_tension(), nullptr), dt_limit);
+    const SplitForces parts{{settings.medium, settings.core_cutoff_radius, near_pair_tolerance, settings.near_distance},
+                            applied,
+                            solver.drag_of_nodes(network),
+                            &last_forces.segment_ends,
+                            [&](const Network &n, const NodeIndex i, const Vec3 &force)
+                            { return solver.velocity_of_node(n, i, force, nullptr); }};
+    const EquationOfMotion motion{[&](const Network &n)
+                                  {
+                                    last_forces = forces(n);
+                                    return solver.velocities(n, last_forces.total, nullptr);
+                                  },
+                                  solver.stiffness(network, line_tension(), nullptr), &parts};
+    return integrator->advance(network, motion, dt_limit);
+  }
+
+  /// One step of at most @p dt_limit ns.
+  IntegratorStep step(const double dt_limit)
+  {
+    IntegratorStep taken = integrate(dt_limit);
+    const Stopwatch watch(topology_seconds);
     TopologyContext context = this->context(taken.displacement);
-    move_lines(context, candidates);
+    move_lines(context, candidates, taken.parts);
     split_nodes(context, splitting(), [&](const Network &n) { return forces(n); });
     if (remeshing)
       remesh(context);
+    strain_volume += plastic_strain_volume(swept);
     swept.clear();
     if (network.node_capacity() > 2 * network.n_nodes() + 64)
       network.clean();
@@ -138,8 +168,11 @@ public:
   SymTensor applied = SymTensor::Zero(); ///< MPa
   double time = 0;                       ///< ns
   TopologyCounts counts;
+  SymTensor strain_volume = SymTensor::Zero(); ///< plastic strain times volume so far, nm^3
+  double topology_seconds = 0;                 ///< processor time of collisions, splitting and remeshing
   bool remeshing = true;
   FarFieldCache *far_field = nullptr;
+  std::unique_ptr<Integrator> integrator;
 
 private:
   double line_tension() const
@@ -157,7 +190,7 @@ private:
   std::unique_ptr<PeriodicImages> images;
   ProductPlane product_plane;
   VelocitySolver solver;
-  StabilisedRungeKutta integrator;
+  NodalForces last_forces;
   CandidateList candidates;
   SweptArea swept;
 };
