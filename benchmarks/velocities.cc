@@ -1,4 +1,4 @@
-// Cost of nodal velocities, local and consistent, against nothing else: forces are given.
+// Cost of nodal velocities, local and consistent, for given forces.
 #include "dd/crystal/slip_systems.h"
 #include "dd/microstructure/sources.h"
 #include "dd/mobility/friction_glide.h"
@@ -64,13 +64,16 @@ const Sources &sources()
 enum class Law
 {
   linear,
-  friction
+  friction, ///< with a largest speed
+  limited   ///< largest speed only
 };
 
 MobilityPointer make(const Law law)
 {
   const MobilityPointer linear = linear_glide(0.02, 0.05);
-  return law == Law::linear ? linear : std::make_shared<FrictionGlide>(linear, FrictionSettings{10, 2000});
+  if (law == Law::linear)
+    return linear;
+  return std::make_shared<FrictionGlide>(linear, FrictionSettings{law == Law::friction ? 10.0 : 0.0, 2000});
 }
 
 void velocities(benchmark::State &state, const Law law, const VelocityMethod method, const bool warm)
@@ -99,8 +102,8 @@ void velocities(benchmark::State &state, const Law law, const VelocityMethod met
 BENCHMARK_CAPTURE(velocities, local_linear, Law::linear, VelocityMethod::local, true)->UseRealTime();
 BENCHMARK_CAPTURE(velocities, consistent_linear_cold, Law::linear, VelocityMethod::consistent, false)->UseRealTime();
 BENCHMARK_CAPTURE(velocities, consistent_linear_warm, Law::linear, VelocityMethod::consistent, true)->UseRealTime();
+BENCHMARK_CAPTURE(velocities, local_limited, Law::limited, VelocityMethod::local, true)->UseRealTime();
 BENCHMARK_CAPTURE(velocities, local_friction, Law::friction, VelocityMethod::local, true)->UseRealTime();
-BENCHMARK_CAPTURE(velocities, consistent_friction_cold, Law::friction, VelocityMethod::consistent, false)
-    ->UseRealTime();
-BENCHMARK_CAPTURE(velocities, consistent_friction_warm, Law::friction, VelocityMethod::consistent, true)->UseRealTime();
+BENCHMARK_CAPTURE(velocities, consistent_limited_cold, Law::limited, VelocityMethod::consistent, false)->UseRealTime();
+BENCHMARK_CAPTURE(velocities, consistent_limited_warm, Law::limited, VelocityMethod::consistent, true)->UseRealTime();
 } // namespace

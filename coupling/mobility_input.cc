@@ -176,6 +176,10 @@ void read_mobility(const InputDeck &deck, Parameters &p)
     p.mobility = std::make_shared<Climb>(p.mobility, climb);
   p.velocities.method =
       deck.text("Mobility/Velocities") == "local" ? VelocityMethod::local : VelocityMethod::consistent;
+  if (p.velocities.method == VelocityMethod::consistent &&
+      (law == "kink pair" || deck.number("Mobility/Friction stress") > 0))
+    deck.reject("Mobility/Velocities", "consistent velocities do not converge with thresholds: allowed are laws "
+                                       "without friction stress or kink pairs");
   p.velocities.sliding_drag = deck.number("Mobility/Sliding drag");
 }
 } // namespace ddfem::coupling

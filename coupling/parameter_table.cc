@@ -128,7 +128,8 @@ void add_mobility(std::vector<ParameterEntry> &t)
   t.push_back(
       {s, "Velocities", "local", one_of("local|consistent"), "",
        "Local: the velocity of a node follows from the forces and arms of that node. Consistent: the velocities of all "
-       "nodes from one sparse system; more exact at coarse discretisation, and of smaller stable steps."});
+       "nodes from one sparse system; more exact at coarse discretisation, and of smaller stable steps; "
+       "not with a friction stress or kink pairs."});
   t.push_back(
       {s, "Sliding drag", "0.1", between(1e-3, 1), "drag",
        "Drag on the sliding of nodes along their lines, in parts of that across them: a numerical coefficient that "

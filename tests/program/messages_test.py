@@ -129,6 +129,8 @@ CASES = [
      ["input.prm:", "Family drags", "EDGE SCREW"]),
     ("friction of another law", "subsection Mobility\n set Law = relaxation\n set Friction stress = 1e7\nend\n", [],
      ["input.prm:", "Mobility/Friction stress", "belongs to Mobility/Law = linear"]),
+    ("consistent velocities with friction", "subsection Mobility\n set Velocities = consistent\n set Friction stress = 1e7\nend\n", [],
+     ["input.prm:", "Mobility/Velocities", "friction stress"]),
     ("two indices", "subsection Crystal\n set Direction along x = 1 1\nend\n", [],
      ["input.prm:", "Direction along x = 1 1", "three or four"]),
     ("network file of another crystal",
