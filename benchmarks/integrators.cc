@@ -9,6 +9,7 @@
 //   orders                               error of a bowing source after steps of equal size, by integrator
 #include "dd/io/paradis_data.h"
 #include "dd/microstructure/sources.h"
+#include "dd/mobility/linear_glide.h"
 #include "samples/dislocation_driver.h"
 
 #include <array>
@@ -40,7 +41,7 @@ DriverSettings settings_for(const IntegratorKind kind, const double tolerance, c
 {
   TopologySettings topology{min_segment, max_segment, 0.01 * min_segment * min_segment, 2.55};
   topology.max_area = 0.2 * max_segment * max_segment;
-  DriverSettings s{copper, copper.a, {drag, drag}, topology, {}};
+  DriverSettings s{copper, copper.a, linear_glide(drag, drag), topology, {}};
   s.integrator.error_tolerance = tolerance;
   s.integrator.max_displacement = max_displacement;
   s.integrator.max_step = 1;

@@ -3,6 +3,7 @@
 #include "dd/integrators/far_forces.h"
 #include "dd/integrators/local_refinement.h"
 #include "dd/microstructure/sources.h"
+#include "dd/mobility/linear_glide.h"
 #include "samples/dislocation_driver.h"
 #include "samples/random_vectors.h"
 
@@ -22,7 +23,7 @@ const SlipSystems fcc(Lattice::fcc, b *std::numbers::sqrt2);
 
 DriverSettings settings_with(const IntegratorKind kind, const double tolerance)
 {
-  DriverSettings s{copper, b, {1.5e-2, 1.5e-2}, {20, 60, 4, 2}, {tolerance, 10, 1e9, 1e-3, 100}};
+  DriverSettings s{copper, b, linear_glide(1.5e-2, 1.5e-2), {20, 60, 4, 2}, {tolerance, 10, 1e9, 1e-3, 100}};
   s.method = kind;
   s.near_distance = 40;
   s.pair_tolerance = 1e-8;

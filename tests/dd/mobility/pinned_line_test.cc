@@ -1,7 +1,7 @@
 // The shape of a line between two pins under stress.
 #include "dd/crystal/material.h"
 #include "dd/microstructure/sources.h"
-#include "tests/dd/topology/dislocation_driver.h"
+#include "samples/dislocation_driver.h"
 
 #include <gtest/gtest.h>
 
