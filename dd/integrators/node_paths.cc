@@ -8,7 +8,7 @@ namespace ddfem
 {
 namespace
 {
-constexpr std::size_t most_parts = 32;
+constexpr std::size_t most_parts = 96;
 } // namespace
 
 Vec3 NodePaths::Polygon::at(const double time) const

@@ -44,13 +44,16 @@ Outcome run(const InputDeck &deck, MPI_Comm communicator, const int threads)
   return {simulation.network().checksum(), simulation.plastic_strain()};
 }
 
-class SameTrajectory : public testing::TestWithParam<std::string>
+/// Mode and integrator.
+class SameTrajectory : public testing::TestWithParam<std::pair<std::string, std::string>>
 {
 };
 
 TEST_P(SameTrajectory, BitByBitOnAnyNumberOfRanksAndThreads)
 {
-  const InputDeck deck = deck_of(GetParam(), high_stress);
+  std::vector<std::string> entries = high_stress;
+  entries.push_back("Time stepping/Integrator=" + GetParam().second);
+  const InputDeck deck = deck_of(GetParam().first, entries);
   const Outcome one = run(deck, MPI_COMM_SELF, 1);
   EXPECT_GT(one.plastic_strain.norm(), 1e-7); // something has happened
   for (const auto &[communicator, threads] : {std::pair(MPI_COMM_SELF, 2), {MPI_COMM_WORLD, 1}, {MPI_COMM_WORLD, 2}})
@@ -62,7 +65,9 @@ TEST_P(SameTrajectory, BitByBitOnAnyNumberOfRanksAndThreads)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, SameTrajectory, testing::Values("infinite", "periodic"));
+INSTANTIATE_TEST_SUITE_P(Modes, SameTrajectory,
+                         testing::Values(std::pair("infinite", "stabilised"), std::pair("periodic", "stabilised"),
+                                         std::pair("periodic", "subcycling")));
 
 TEST(FiniteTrajectory, AgreesOnAnyNumberOfRanksToTheSolverTolerance)
 {
