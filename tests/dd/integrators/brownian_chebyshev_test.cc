@@ -1,9 +1,8 @@
 #include "dd/elasticity/self_force.h"
 #include "dd/integrators/brownian_chebyshev.h"
 #include "dd/microstructure/sources.h"
-#include "dd/mobility/linear_glide.h"
-#include "dd/mobility/thermal_force.h"
-#include "tests/dd/integrators/statistics.h"
+#include "samples/statistics.h"
+#include "samples/thermal_run.h"
 #include "tests/support/one_thread.h"
 
 #include <gtest/gtest.h>
@@ -95,74 +94,35 @@ TEST(BrownianChebyshev, StepIsLimitedByStiffnessSpeedAndNoiseBeforeAnythingIsDra
   EXPECT_THROW(BrownianChebyshev(settings).advance(n, motion, 0.1, 1), std::runtime_error);
 }
 
-/// A line that is moved by its core energy and a heat bath.
-struct ThermalLine
+const IsotropicMedium medium{1000, 0.3, 1.0};
+const double core_cutoff = std::exp(-1.0);
+
+/// One free node between two pins, moved by the core energy, with a drag that depends on the character.
+samples::ThermalRun short_line()
 {
-  Network network;
-  LinearGlide law{4, 1}; ///< edge, screw
-  IsotropicMedium medium{1000, 0.3, 1.0};
-  CoreEnergy core{std::exp(-1.0)};
-  HeatBath bath{};
-  bool with_drift = true;
+  const HeatBath bath{30, 1, 0}; // kT of the order of the line's energy, so that the arms turn by large angles
+  return {pinned_line(2), samples::core_forces(medium, core_cutoff), LinearGlide{4, 1}, bath};
+}
 
-  double energy(const NodeIndex i) const
-  {
-    double sum = 0;
-    for (const SegmentIndex s : network.connected_segments(i))
-      sum += core_energy(medium, core, network.position(network.start(s)), network.position(network.end(s)),
-                         network.burgers(s));
-    return sum;
-  }
-
-  std::vector<Vec3> velocity(const Network &n) const
-  {
-    std::vector<Vec3> force(n.node_capacity(), Vec3::Zero());
-    for (const SegmentIndex s : n.segments())
-    {
-      const SegmentForces f = core_force(medium, core, n.position(n.start(s)), n.position(n.end(s)), n.burgers(s));
-      force[n.start(s).value] += f.start;
-      force[n.end(s).value] += f.end;
-    }
-    return glide_velocities(n, force, law, nullptr);
-  }
-
-  BrownianMotion motion()
-  {
-    BrownianMotion m;
-    m.velocity = [this](const Network &n) { return velocity(n); };
-    m.mobility = [this, start = network](const Network &n, const std::vector<Vec3> &force)
-    { return glide_velocities(with_drift ? n : start, force, law, nullptr); };
-    m.thermal_force = [this](const Network &n, const double dt)
-    {
-      return thermal_forces(
-          n,
-          [&](const SegmentIndex s) {
-            return drag_of_arms(n, {&s, 1}, law);
-          },
-          bath, dt);
-    };
-    return m;
-  }
-
-  void step(const double dt)
-  {
-    const IntegratorStep taken = BrownianChebyshev(no_limits).advance(network, motion(), 0.4 / dt, dt);
-    for (const NodeIndex i : network.nodes())
-      network.set_position(i, network.position(i) + taken.displacement[i.value]);
-    ++bath.step;
-  }
-};
+double energy(const Network &network)
+{
+  double sum = 0;
+  for (const SegmentIndex s : network.segments())
+    sum += core_energy(medium, CoreEnergy{core_cutoff}, network.position(network.start(s)),
+                       network.position(network.end(s)), network.burgers(s));
+  return sum;
+}
 
 /// sin^2 of the angle by which the arms of the middle node are turned, averaged over its height y with the weight of exp(-E/kT) or,
 /// without the drift, of D exp(-E/kT): what is stationary for dx = f/D dt + sqrt(2 kT/D) dW in the sense of Ito.
-double expected_tilt(ThermalLine line, const bool weighted_by_drag)
+double expected_tilt(samples::ThermalRun line, const bool weighted_by_drag)
 {
   const NodeIndex middle = *line.network.find_node(1);
   double sum = 0, norm = 0;
   for (double y = -40 * half_length; y <= 40 * half_length; y += 0.01 * half_length)
   {
     line.network.set_position(middle, Vec3(0, y, 0));
-    double weight = std::exp(-(line.energy(middle)) / line.bath.kT);
+    double weight = std::exp(-energy(line.network) / line.bath.kT);
     if (weighted_by_drag)
       weight *= nodal_drag(line.network, middle, line.law);
     sum += weight * y * y / (half_length * half_length + y * y);
@@ -172,13 +132,14 @@ double expected_tilt(ThermalLine line, const bool weighted_by_drag)
 }
 
 /// The same average over a run.
-Estimate measured_tilt(ThermalLine line)
+Estimate measured_tilt(samples::ThermalRun line)
 {
   const NodeIndex middle = *line.network.find_node(1);
   std::vector<double> tilt;
   for (int k = 0; k < 100000; ++k)
   {
-    line.step(0.3); // the error of the step is below one standard deviation of the mean here, and falls with it
+    // The error of this step is below one standard deviation of the mean, and falls with it.
+    line.step(1.0, 0.3);
     const double y = line.network.position(middle)[1];
     tilt.push_back(y * y / (half_length * half_length + y * y));
   }
@@ -188,8 +149,7 @@ Estimate measured_tilt(ThermalLine line)
 TEST(BrownianChebyshev, ShortLineWithCharacterDependentDragTakesTheBoltzmannDistribution)
 {
   const OneThread guard;
-  ThermalLine line{.network = pinned_line(2)};
-  line.bath = {30, 1, 0}; // of the order of the line's energy, so that it turns by large angles
+  samples::ThermalRun line = short_line();
   const double boltzmann = expected_tilt(line, false), ito = expected_tilt(line, true);
   const Estimate right = measured_tilt(line);
   EXPECT_NEAR(right.mean, boltzmann, 4 * right.error);
