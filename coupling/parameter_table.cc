@@ -95,6 +95,41 @@ void add_mobility(std::vector<ParameterEntry> &t)
                "Drag coefficient B of edge lines: v = tau b / B; 0: that of the named material."});
   t.push_back({s, "Screw drag", "0", not_negative(), "Pa s",
                "Drag coefficient B of screw lines; 0: that of the named material."});
+  t.push_back({s, "Temperature", "300", positive(), "K", "Of thermal motion and of cross-slip."});
+  t.push_back(
+      {s, "Thermal motion", "false", yes_no(), "",
+       "Langevin forces of the heat bath on the lines, integrated by a method of their own: of Time stepping only "
+       "Maximum step and Maximum displacement count then."});
+}
+
+void add_cross_slip(std::vector<ParameterEntry> &t)
+{
+  const std::string s = "Cross-slip";
+  t.push_back(
+      {s, "Model", "off", one_of("off|thermally activated|largest stress"), "",
+       "Whether screw lines change their glide plane: at random, with the rate nu (L/L_0) "
+       "exp(-[Q - V_S |tau| - V_E (sigma_c - sigma_g)]/kT) (fcc), or to the plane with the largest resolved shear "
+       "stress (bcc)."});
+  t.push_back({s, "Screw angle", "5", between(0, 30), "degrees",
+               "Segments within this angle of their Burgers vector are screws."});
+  t.push_back(
+      {s, "Attempt rate", "0", not_negative(), "1/s",
+       "nu, for a line of the reference length. Without this and the next three entries: the law of Kubin et al. "
+       "(1992) for copper."});
+  t.push_back({s, "Activation energy", "0", not_negative(), "J", "Q, without stress."});
+  t.push_back({s, "Schmid volume", "0", not_negative(), "m^3",
+               "V_S, activation volume of the shear stress tau along b on the cross-slip plane."});
+  t.push_back(
+      {s, "Escaig volume", "0", not_negative(), "m^3",
+       "V_E, activation volume of the stresses that widen the stacking fault on the cross-slip plane (sigma_c) and "
+       "on the glide plane (sigma_g)."});
+  t.push_back({s, "Reference length", "1e-6", positive(), "m", "L_0."});
+  t.push_back({s, "Stress ratio", "1", between(0, 10), "",
+               "Thermally activated: the new plane's resolved shear stress over the present one's must exceed this; 0: "
+               "the rate "
+               "alone decides."});
+  t.push_back({s, "Hysteresis", "1.1", between(1, 10), "",
+               "Largest stress: the new plane's resolved shear stress over the present one's must exceed this."});
 }
 
 void add_domain(std::vector<ParameterEntry> &t)
@@ -325,9 +360,12 @@ std::vector<ParameterEntry> make_table()
   std::vector<ParameterEntry> t;
   t.push_back({"", "Mode", "finite", one_of("finite|periodic|infinite"), "",
                "Finite grain with its boundary conditions, periodic cell, or unbounded body."});
+  t.push_back({"", "Random seed", "1", count(0), "",
+               "Of all random numbers: thermal motion and cross-slip. Same seed, same run, on any number of ranks."});
   add_material(t);
   add_crystal(t);
   add_mobility(t);
+  add_cross_slip(t);
   add_domain(t);
   add_boundary(t);
   add_loading(t);

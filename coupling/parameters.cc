@@ -2,6 +2,7 @@
 
 #include "coupling/input_error.h"
 #include "coupling/microstructure_input.h"
+#include "coupling/thermal_input.h"
 #include "dd/common/units.h"
 #include "dd/crystal/material.h"
 
@@ -286,6 +287,7 @@ Parameters interpret(const InputDeck &deck)
   p.mode = mode == "finite" ? Mode::finite : mode == "periodic" ? Mode::periodic : Mode::infinite;
   read_material(deck, p);
   read_crystal(deck, p);
+  read_thermal(deck, p);
   read_mesh(deck, p);
   read_grain(deck, p);
   read_loading(deck, p);

@@ -48,7 +48,7 @@ void install_signal_handlers()
 
 Simulation::Simulation(const Parameters &p, MPI_Comm comm)
     : parameters(p), communicator(comm), dislocations(build_network(p)), far_field(p.far_field),
-      product_plane(product_plane_rule(p.slip_systems())), integrator(p.integrator)
+      product_plane(product_plane_rule(p.slip_systems())), integrator(p.integrator), brownian_integrator(p.integrator)
 {
   if (p.mode == Mode::finite)
   {
@@ -175,6 +175,8 @@ IntegratorStep Simulation::move_lines()
   for (const NodeIndex i : dislocations.nodes())
     drag[i.value] = nodal_drag(dislocations, i, parameters.mobility);
   const double stiffness = line_tension_stiffness(dislocations, largest_line_tension(parameters), drag);
+  if (parameters.thermal.motion)
+    return brownian_integrator.advance(dislocations, brownian_motion(velocity, drag), stiffness, time_left());
   return integrator.advance(dislocations, velocity, stiffness, time_left());
 }
 
@@ -190,7 +192,7 @@ TopologyContext Simulation::topology_context(std::vector<Vec3> displacement)
           std::move(displacement)};
 }
 
-void Simulation::change_topology(TopologyContext &context)
+void Simulation::change_topology(TopologyContext &context, const double dt)
 {
   const Timing::Scope scope(timing, "topology");
   ddfem::move_lines(context, candidates);
@@ -204,6 +206,7 @@ void Simulation::change_topology(TopologyContext &context)
                   correction = finite_grain->correction_at_segments(n);
                 return compute_nodal_forces(n, parameters.force_settings(), environment(), communicator);
               });
+  cross_slip_lines(context, dt);
   remesh(context);
   if (dislocations.node_capacity() > 2 * dislocations.n_nodes() + 64)
     dislocations.clean();
@@ -264,7 +267,7 @@ RunEnd Simulation::run(RunOutput &output)
     step = move_lines();
     LineWork work = work_of_step(step);
     TopologyContext context = topology_context(step.displacement);
-    change_topology(context);
+    change_topology(context, step.dt);
     book(work);
     time += step.dt;
     ++step_number;

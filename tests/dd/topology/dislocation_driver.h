@@ -7,6 +7,7 @@
 #include "dd/integrators/stabilised_runge_kutta.h"
 #include "dd/mobility/linear_glide.h"
 #include "dd/topology/collisions/moving_lines.h"
+#include "dd/topology/cross_slip.h"
 #include "dd/topology/node_splitting.h"
 #include "dd/topology/product_plane_rule.h"
 #include "dd/topology/remesh.h"
@@ -29,6 +30,7 @@ struct DriverSettings
   IntegratorSettings integrator;
   double pair_tolerance = 1e-5;
   SummationSettings summation = {};
+  CrossSlipSettings cross_slip = {};
 };
 
 /// A network in an infinite body or, with @p cell, in a periodic one.
@@ -36,8 +38,8 @@ class DislocationDriver
 {
 public:
   DislocationDriver(DriverSettings driver_settings, const SlipSystems &systems, const PeriodicCell *periodic = nullptr)
-      : settings(std::move(driver_settings)), cell(periodic), product_plane(product_plane_rule(systems)),
-        integrator(settings.integrator)
+      : settings(std::move(driver_settings)), cell(periodic), crystal(systems),
+        product_plane(product_plane_rule(systems)), integrator(settings.integrator)
   {
     if (cell)
     {
@@ -61,6 +63,8 @@ public:
     TopologyContext context = this->context(taken.displacement);
     move_lines(context, candidates);
     split_nodes(context, splitting(), [&](const Network &n) { return forces(n); });
+    ddfem::cross_slip(context, settings.cross_slip, crystal, {taken.dt, 1, n_steps++},
+                      [&](const std::vector<Vec3> &points) { return stress(points); });
     if (remeshing)
       remesh(context);
     swept.clear();
@@ -95,6 +99,16 @@ public:
                                 {settings.medium, settings.core_cutoff_radius, settings.pair_tolerance,
                                  RayDirection::normal, settings.summation},
                                 e, MPI_COMM_SELF);
+  }
+
+  /// Total stress at points, MPa.
+  std::vector<SymTensor> stress(const std::vector<Vec3> &points)
+  {
+    std::vector<SymTensor> sum =
+        LineSystem(settings.medium, network, nullptr, RayDirection::normal, cell, images.get()).stress(points);
+    for (SymTensor &s : sum)
+      s += applied;
+    return sum;
   }
 
   TopologyContext context(std::vector<Vec3> displacement)
@@ -153,6 +167,8 @@ private:
   }
 
   const PeriodicCell *cell;
+  SlipSystems crystal;
+  std::uint64_t n_steps = 0;
   std::unique_ptr<PeriodicImages> images;
   ProductPlane product_plane;
   StabilisedRungeKutta integrator;
