@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -177,7 +178,7 @@ void measure_modes(const std::string &kind)
     // Slowest mode: its correlation lasts 1/lambda, a sample of its energy is independent after as long.
     const double slowest = modes.eigenvalues()[0] / modes.eigenvalues()[n - 1];
     constexpr double wanted = 16000;
-    const int chains = 64, steps = static_cast<int>(wanted / chains / (3.6 * slowest));
+    const int chains = 64, steps = std::max(8000, static_cast<int>(wanted / chains / (3.6 * slowest)));
     std::vector<std::vector<double>> energies(static_cast<std::size_t>(n),
                                               std::vector<double>(static_cast<std::size_t>(chains)));
 #pragma omp parallel for schedule(dynamic)

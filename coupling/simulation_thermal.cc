@@ -15,8 +15,13 @@ BrownianMotion Simulation::brownian_motion(VelocityFunction velocity, const std:
   { return glide_velocities(n, force, parameters.mobility, finite_grain ? &finite_grain->shape() : nullptr); };
   motion.thermal_force = [this, bath](const Network &n, const double dt)
   {
-    const EndDrag end_drag = [&](const SegmentIndex s) { return drag_of_arms(n, {&s, 1}, parameters.mobility); };
-    return thermal_forces(n, end_drag, bath, dt);
+    // Local velocities have the drag of a segment across it for the sliding of its ends, too.
+    const SegmentDrag of_segment = [&](const SegmentIndex s)
+    {
+      const double across = 2 * drag_of_arms(n, {&s, 1}, parameters.mobility);
+      return LineDrag{across, across};
+    };
+    return thermal_forces(n, of_segment, DragMatrix::lumped, bath, dt);
   };
   for (const NodeIndex i : dislocations.nodes())
     if (drag[i.value] > 0)

@@ -30,15 +30,13 @@ IntegratorStep ThermalRun::step(const double stiffness, const double dt_limit)
   motion.velocity = [this](const Network &n) { return velocity(n); };
   motion.mobility = [this, start = with_drift ? Network() : network](const Network &n, const std::vector<Vec3> &random)
   { return glide_velocities(with_drift ? n : start, random, law, nullptr); };
-  motion.thermal_force = [this](const Network &n, const double dt)
+  const SegmentDrag drag = [this](const SegmentIndex s)
   {
-    return thermal_forces(
-        n,
-        [&](const SegmentIndex s) {
-          return drag_of_arms(n, {&s, 1}, law);
-        },
-        bath, dt);
+    const double of_segment = 2 * drag_of_arms(network, {&s, 1}, law);
+    return LineDrag{of_segment, of_segment};
   };
+  motion.thermal_force = [&](const Network &n, const double dt)
+  { return thermal_forces(n, drag, DragMatrix::lumped, bath, dt); };
   const IntegratorSettings no_limits{1, 1e6, 1e9, 1, 1};
   IntegratorStep taken = BrownianChebyshev(no_limits).advance(network, motion, stiffness, dt_limit);
   for (const NodeIndex i : network.nodes())

@@ -25,14 +25,40 @@ TopologyFixture uneven_loop()
   return f;
 }
 
+SegmentDrag drag_of(const Network &n, const double sliding = 1)
+{
+  return [&n, sliding](const SegmentIndex s)
+  {
+    const double across = 2 * drag_of_arms(n, {&s, 1}, law);
+    return LineDrag{across, sliding * across};
+  };
+}
+
 std::vector<Vec3> forces(const Network &n, const std::uint64_t step, const std::uint64_t seed = 9)
 {
-  return thermal_forces(
-      n,
-      [&](const SegmentIndex s) {
-        return drag_of_arms(n, {&s, 1}, law);
-      },
-      {kT, seed, step}, dt);
+  return thermal_forces(n, drag_of(n), DragMatrix::lumped, {kT, seed, step}, dt);
+}
+
+using Matrix15 = Eigen::Matrix<double, 15, 15>;
+
+/// The drag matrix of a network of five nodes.
+Matrix15 drag_matrix(const Network &n, const DragMatrix form, const double sliding)
+{
+  Matrix15 a = Matrix15::Zero();
+  for (const SegmentIndex s : n.segments())
+  {
+    const Vec3 t = n.direction(s).normalized();
+    const LineDrag d = drag_of(n, sliding)(s);
+    const Mat3 c = d.across * (Mat3::Identity() - t * t.transpose()) + d.along * t * t.transpose();
+    const double same = form == DragMatrix::lumped ? 1.0 / 2 : 1.0 / 3,
+                 other = form == DragMatrix::lumped ? 0 : 1.0 / 6;
+    const auto i = static_cast<Eigen::Index>(3 * n.start(s).value), k = static_cast<Eigen::Index>(3 * n.end(s).value);
+    a.block<3, 3>(i, i) += same * c;
+    a.block<3, 3>(k, k) += same * c;
+    a.block<3, 3>(i, k) += other * c;
+    a.block<3, 3>(k, i) += other * c;
+  }
+  return a;
 }
 
 TEST(ThermalForce, BoltzmannConstantIsThatOfTheSi)
@@ -42,32 +68,33 @@ TEST(ThermalForce, BoltzmannConstantIsThatOfTheSi)
   EXPECT_NEAR(boltzmann_constant * 300 / electronvolt, 0.025852, 1e-6);
 }
 
-TEST(ThermalForce, CovarianceIsTwiceKtTimesDragOverTheStep)
+TEST(ThermalForce, CovarianceIsTwiceKtTimesTheDragMatrixOverTheStep)
 {
   const OneThread guard;
   const TopologyFixture f = uneven_loop();
   const Network &n = f.network;
   constexpr unsigned samples = 20000;
-  Eigen::Matrix<double, 15, 15> covariance = Eigen::Matrix<double, 15, 15>::Zero();
-  for (unsigned step = 0; step < samples; ++step)
+  for (const auto &[form, sliding] :
+       {std::pair(DragMatrix::lumped, 1.0), {DragMatrix::lumped, 0.1}, {DragMatrix::consistent, 0.1}})
   {
-    const std::vector<Vec3> r = forces(n, step);
-    Eigen::Matrix<double, 15, 1> all;
-    for (Eigen::Index i = 0; i < 5; ++i)
-      all.segment<3>(3 * i) = r[static_cast<std::size_t>(i)];
-    covariance += all * all.transpose() / samples;
-  }
-  // In units of the expected deviations; of an element the estimator has the deviation 1/sqrt(samples), on the diagonal sqrt(2)
-  // times that.
-  const double sigma = 1 / std::sqrt(double(samples));
-  for (Eigen::Index i = 0; i < 15; ++i)
-    for (Eigen::Index k = 0; k < 15; ++k)
+    Matrix15 covariance = Matrix15::Zero();
+    for (unsigned step = 0; step < samples; ++step)
     {
-      const auto drag = [&](const Eigen::Index c)
-      { return nodal_drag(n, NodeIndex{static_cast<std::uint32_t>(c / 3)}, law); };
-      const double unit = 2 * kT / dt * std::sqrt(drag(i) * drag(k));
-      EXPECT_NEAR(covariance(i, k) / unit, i == k ? 1 : 0, (i == k ? 4 * std::sqrt(2) : 4) * sigma) << i << " " << k;
+      const std::vector<Vec3> r = thermal_forces(n, drag_of(n, sliding), form, {kT, 9, step}, dt);
+      Eigen::Matrix<double, 15, 1> all;
+      for (Eigen::Index i = 0; i < 5; ++i)
+        all.segment<3>(3 * i) = r[static_cast<std::size_t>(i)];
+      covariance += all * all.transpose() / samples;
     }
+    const Matrix15 expected = 2 * kT / dt * drag_matrix(n, form, sliding);
+    // The mean of x_i x_k of normal variables has the variance (C_ii C_kk + C_ik^2)/samples. 360 elements: five deviations.
+    for (Eigen::Index i = 0; i < 15; ++i)
+      for (Eigen::Index k = 0; k <= i; ++k)
+      {
+        const double variance = expected(i, i) * expected(k, k) + expected(i, k) * expected(i, k);
+        EXPECT_NEAR(covariance(i, k), expected(i, k), 5 * std::sqrt(variance / samples)) << i << " " << k;
+      }
+  }
 }
 
 TEST(ThermalForce, LineOfManySegmentsFeelsTheForceThatItFeelsWithFew)
