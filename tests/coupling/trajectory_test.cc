@@ -69,8 +69,8 @@ TEST_P(SameTrajectory, RandomEventsAreTheSameOnAnyNumberOfRanksAndThreads)
   std::vector<std::string> settings = high_stress;
   settings.insert(settings.end(), {"Microstructure/Frank-Read sources=1 1 1 / -1 0 1 / 0 0 0 / 2e-7 / 0",
                                    "Mobility/Thermal motion=true", "Cross-slip/Model=thermally activated",
-                                   "Cross-slip/Attempt rate=1e13", "Cross-slip/Activation energy=1e-20",
-                                   "Time stepping/Maximum steps=80"});
+                                   "Cross-slip/Attempt rate=1e14", "Cross-slip/Activation energy=1e-20",
+                                   "Time stepping/Maximum steps=25"});
   const Outcome one = run(deck_of(GetParam(), settings), MPI_COMM_SELF, 1);
   EXPECT_GT(one.cross_slips, 0U);
   for (const auto &[communicator, threads] : {std::pair(MPI_COMM_SELF, 2), {MPI_COMM_WORLD, 1}})
