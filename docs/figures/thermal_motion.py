@@ -42,6 +42,7 @@ for part in re.split(r'(?=core forces|elastic forces)', modes)[1:]:
     right.errorbar([(k + 1) / int(segments) for k in range(len(values))], [v for v, _ in values], [e for _, e in values],
                    fmt='o' if kind == 'core' else 's', markersize=2.5, linewidth=0.7, label=f'{segments} segments, {kind}')
 right.axhspan(0.97, 1.03, color='0.9', zorder=0)
+right.set_ylim(0.94, 1.08)
 right.set_xlabel('number of the mode / number of segments')
 right.set_ylabel('stiffness x mean square amplitude / kT')
 right.legend(fontsize=6)
