@@ -115,7 +115,7 @@ void add_mobility(std::vector<ParameterEntry> &t)
        "McDowell, Int. J. Plast. 27 (2011) 1; law linear); 0: no limit."});
   t.push_back({s, "Climb drag", "0", not_negative(), "Pa s",
                "Drag coefficient of the climb of lines that have no glide plane; 0: they are sessile."});
-  t.push_back({s, "Temperature", "300", positive(), "K", "Temperature of the kink-pair law."});
+  t.push_back({s, "Temperature", "300", positive(), "K", "Of the kink-pair law, thermal motion and cross-slip."});
   t.push_back(
       {s, "Kink drag", "0", not_negative(), "Pa s", "Drag coefficient of kinks (law kink pair); 0: of tungsten."});
   t.push_back({s, "Kink-pair enthalpy", "0", not_negative(), "eV",
@@ -134,6 +134,40 @@ void add_mobility(std::vector<ParameterEntry> &t)
       {s, "Sliding drag", "0.1", between(1e-3, 1), "drag",
        "Drag on the sliding of nodes along their lines, in parts of that across them: a numerical coefficient that "
        "slows the ends of junctions if it is large."});
+  t.push_back(
+      {s, "Thermal motion", "false", yes_no(), "",
+       "Langevin forces of the heat bath on the lines, integrated by a method of their own: of Time stepping only "
+       "Maximum step and Maximum displacement count then."});
+}
+
+void add_cross_slip(std::vector<ParameterEntry> &t)
+{
+  const std::string s = "Cross-slip";
+  t.push_back(
+      {s, "Model", "off", one_of("off|thermally activated|largest stress"), "",
+       "Whether screw lines change their glide plane: at random, with the rate nu (L/L_0) "
+       "exp(-[Q - V_S |tau| - V_E (sigma_c - sigma_g)]/kT) (fcc), or to the plane with the largest resolved shear "
+       "stress (bcc)."});
+  t.push_back({s, "Screw angle", "5", between(0, 30), "degrees",
+               "Segments within this angle of their Burgers vector are screws."});
+  t.push_back(
+      {s, "Attempt rate", "0", not_negative(), "1/s",
+       "nu, for a line of the reference length. Without this and the next three entries: the law of Kubin et al. "
+       "(1992) for copper."});
+  t.push_back({s, "Activation energy", "0", not_negative(), "J", "Q, without stress."});
+  t.push_back({s, "Schmid volume", "0", not_negative(), "m^3",
+               "V_S, activation volume of the shear stress tau along b on the cross-slip plane."});
+  t.push_back(
+      {s, "Escaig volume", "0", not_negative(), "m^3",
+       "V_E, activation volume of the stresses that widen the stacking fault on the cross-slip plane (sigma_c) and "
+       "on the glide plane (sigma_g)."});
+  t.push_back({s, "Reference length", "1e-6", positive(), "m", "L_0."});
+  t.push_back({s, "Stress ratio", "1", between(0, 10), "",
+               "Thermally activated: the new plane's resolved shear stress over the present one's must exceed this; 0: "
+               "the rate "
+               "alone decides."});
+  t.push_back({s, "Hysteresis", "1.1", between(1, 10), "",
+               "Largest stress: the new plane's resolved shear stress over the present one's must exceed this."});
 }
 
 void add_domain(std::vector<ParameterEntry> &t)
@@ -378,9 +412,12 @@ std::vector<ParameterEntry> make_table()
   std::vector<ParameterEntry> t;
   t.push_back({"", "Mode", "finite", one_of("finite|periodic|infinite"), "",
                "Finite grain with its boundary conditions, periodic cell, or unbounded body."});
+  t.push_back({"", "Random seed", "1", count(0), "",
+               "Of all random numbers: thermal motion and cross-slip. Same seed, same run, on any number of ranks."});
   add_material(t);
   add_crystal(t);
   add_mobility(t);
+  add_cross_slip(t);
   add_domain(t);
   add_boundary(t);
   add_loading(t);

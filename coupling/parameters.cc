@@ -3,6 +3,7 @@
 #include "coupling/input_error.h"
 #include "coupling/microstructure_input.h"
 #include "coupling/mobility_input.h"
+#include "coupling/thermal_input.h"
 #include "dd/common/units.h"
 #include "dd/crystal/material.h"
 
@@ -296,6 +297,7 @@ Parameters interpret(const InputDeck &deck)
   read_material(deck, p);
   read_crystal(deck, p);
   read_mobility(deck, p);
+  read_thermal(deck, p);
   read_mesh(deck, p);
   read_grain(deck, p);
   read_loading(deck, p);

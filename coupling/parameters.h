@@ -13,6 +13,7 @@
 #include "dd/integrators/make_integrator.h"
 #include "dd/microstructure/sources.h"
 #include "dd/mobility/velocity_solver.h"
+#include "dd/topology/cross_slip.h"
 #include "dd/topology/topology_context.h"
 #include "fem/elastic_problem.h"
 #include "fem/mesh.h"
@@ -69,6 +70,13 @@ struct LoadingParameters
   SymTensor stress_rate = SymTensor::Zero(); ///< MPa/ns
 };
 
+struct ThermalParameters
+{
+  double temperature = 300; ///< K
+  bool motion = false;      ///< Langevin forces on the lines
+  std::uint64_t seed = 1;   ///< of all random numbers of the run
+};
+
 struct StopCriteria
 {
   double final_time = 0; ///< ns
@@ -96,6 +104,8 @@ struct Parameters
   Orientation orientation; ///< with the unit cell, that is c/a
   MobilityPointer mobility;
   VelocitySettings velocities;
+  ThermalParameters thermal;
+  CrossSlipSettings cross_slip;
   GrainParameters grain;
   PeriodicCell cell; ///< of the periodic mode; its volume is the reference volume of the infinite mode
   LoadingParameters loading;

@@ -75,7 +75,7 @@ constexpr const char *history_header =
     "platen moment x [N m],platen moment y [N m],platen moment z [N m],"
     "fixed face force x [N],fixed face force y [N],fixed face force z [N],"
     "fixed face moment x [N m],fixed face moment y [N m],fixed face moment z [N m],"
-    "work [J],stored energy [J],dissipated energy [J],dissipated by topology [J],energy mismatch [-]\n";
+    "work [J],stored energy [J],dissipated energy [J],dissipated by topology [J],energy mismatch [-],cross-slips\n";
 } // namespace
 
 void write_file(const std::string &path, const std::string &content)
@@ -172,7 +172,8 @@ void RunOutput::add_history(const HistoryRow &r)
   put_vector(r.fixed_force, units::newton), put_vector(r.fixed_moment, units::newton_metre);
   put(r.work / units::joule), put(r.stored_energy / units::joule), put(r.dissipated_energy / units::joule),
       put(r.dissipated_by_topology / units::joule);
-  o << r.energy_mismatch << "\n";
+  put(r.energy_mismatch);
+  o << r.cross_slips << "\n";
   history << o.str() << std::flush;
   if (!history)
     throw FileAccessError(path + "/history.csv: cannot be written");

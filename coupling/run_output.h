@@ -22,8 +22,8 @@ struct HistoryRow
   double axial_plastic_strain = 0;
   double line_length = 0, density = 0; ///< nm, 1/nm^2
   std::size_t segments = 0, nodes = 0, junctions = 0, surface_nodes = 0;
-  std::size_t collisions = 0, surface_exits = 0;  ///< since the start
-  double fixed_reaction = 0, platen_reaction = 0; ///< MPa nm^2, tension positive
+  std::size_t collisions = 0, surface_exits = 0, cross_slips = 0; ///< since the start
+  double fixed_reaction = 0, platen_reaction = 0;                 ///< MPa nm^2, tension positive
   unsigned fem_iterations = 0;
   double force_imbalance = 0, moment_imbalance = 0;
   unsigned stages = 0;

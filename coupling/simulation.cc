@@ -49,7 +49,7 @@ void install_signal_handlers()
 Simulation::Simulation(const Parameters &p, MPI_Comm comm)
     : parameters(p), communicator(comm), dislocations(build_network(p)), far_field(p.far_field),
       product_plane(product_plane_rule(p.slip_systems())), velocities(p.mobility, p.velocities),
-      integrator(make_integrator(p.method, p.integrator))
+      integrator(make_integrator(p.method, p.integrator)), brownian_integrator(p.integrator)
 {
   if (p.mode == Mode::finite)
   {
@@ -185,7 +185,10 @@ IntegratorStep Simulation::move_lines()
                                   return velocities.velocities(n, forces_at_end.total, e.shape);
                                 },
                                 std::move(stiffness), &parts};
-  return integrator->advance(dislocations, motion, time_left());
+  return parameters.thermal.motion
+             ? brownian_integrator.advance(dislocations, brownian_motion(motion.velocity, parts.drag),
+                                           motion.largest_stiffness(), time_left())
+             : integrator->advance(dislocations, motion, time_left());
 }
 
 TopologyContext Simulation::topology_context(std::vector<Vec3> displacement)
@@ -200,10 +203,10 @@ TopologyContext Simulation::topology_context(std::vector<Vec3> displacement)
           std::move(displacement)};
 }
 
-void Simulation::change_topology(TopologyContext &context, const std::vector<MotionPart> &parts)
+void Simulation::change_topology(TopologyContext &context, const IntegratorStep &step)
 {
   const Timing::Scope scope(timing, "topology");
-  ddfem::move_lines(context, candidates, parts);
+  ddfem::move_lines(context, candidates, step.parts);
   SplittingModel model{parameters.medium, parameters.core_cutoff_radius, parameters.mobility};
   model.applied = applied_stress();
   // The network has changed since the last solve, but its correction field has not: it is read at the new points.
@@ -214,6 +217,7 @@ void Simulation::change_topology(TopologyContext &context, const std::vector<Mot
                   correction = finite_grain->correction_at_segments(n);
                 return compute_nodal_forces(n, parameters.force_settings(), environment(), communicator);
               });
+  cross_slip_lines(context, step.dt);
   remesh(context);
   if (dislocations.node_capacity() > 2 * dislocations.n_nodes() + 64)
     dislocations.clean();
@@ -274,7 +278,7 @@ RunEnd Simulation::run(RunOutput &output)
     step = move_lines();
     LineWork work = work_of_step(step);
     TopologyContext context = topology_context(step.displacement);
-    change_topology(context, step.parts);
+    change_topology(context, step);
     book(work);
     // No rounding at the end of the run.
     time = step.dt == parameters.stop.final_time - time ? parameters.stop.final_time : time + step.dt;

@@ -10,6 +10,7 @@
 #include "coupling/run_output.h"
 #include "coupling/timing.h"
 #include "dd/forces/nodal_forces.h"
+#include "dd/integrators/brownian_chebyshev.h"
 #include "dd/topology/collisions/candidate_list.h"
 #include "dd/topology/topology_context.h"
 
@@ -54,6 +55,7 @@ public:
 
   const Network &network() const { return dislocations; }
   const FiniteGrain *grain() const { return finite_grain.get(); }
+  const TopologyCounts &topology_counts() const { return counts; }
   const SymTensor &plastic_strain() const { return total_plastic_strain; }
   double current_time() const { return time; } ///< ns
   /// Nominal strain and stress along the loading; zero strain for a stress given as a tensor.
@@ -89,7 +91,11 @@ private:
   LineWork work_of_step(const IntegratorStep &step) const;
   double work_on_swept_area() const;
   IntegratorStep move_lines();
-  void change_topology(TopologyContext &context, const std::vector<MotionPart> &parts);
+  void change_topology(TopologyContext &context, const IntegratorStep &step);
+  /// For the step that begins: random numbers are those of its number. @p drag: of the nodes, MPa ns nm.
+  BrownianMotion brownian_motion(VelocityFunction velocity, const std::vector<double> &drag) const;
+  std::vector<SymTensor> total_stress(const std::vector<Vec3> &points);
+  void cross_slip_lines(TopologyContext &context, double dt);
   void book(LineWork &work);
   double axial_plastic_strain() const;
   double reference_volume() const;
@@ -114,6 +120,7 @@ private:
   ProductPlane product_plane;
   VelocitySolver velocities;
   std::unique_ptr<Integrator> integrator;
+  BrownianChebyshev brownian_integrator;
   SegmentField correction; ///< of the last solve, at the segments
   std::unique_ptr<CorrectionUpdate> update;
   GrainSolution solution;

@@ -42,6 +42,7 @@ HistoryRow Simulation::history_row(const IntegratorStep &step) const
   }
   r.collisions = counts.collisions;
   r.surface_exits = counts.surface_exits;
+  r.cross_slips = counts.cross_slips;
   r.stages = step.stages;
   r.max_speed = step.max_speed;
   r.wall_time = timing.elapsed();
@@ -113,8 +114,9 @@ void Simulation::report(RunOutput &output, const IntegratorStep &step, const boo
   {
     output.log("collisions " + std::to_string(counts.collisions) + ", annihilations " +
                std::to_string(counts.annihilations) + ", node splits " + std::to_string(counts.splits) +
-               ", surface exits " + std::to_string(counts.surface_exits) + ", segments halved " +
-               std::to_string(counts.refinements) + ", nodes removed " + std::to_string(counts.coarsenings));
+               ", surface exits " + std::to_string(counts.surface_exits) + ", cross-slips " +
+               std::to_string(counts.cross_slips) + ", segments halved " + std::to_string(counts.refinements) +
+               ", nodes removed " + std::to_string(counts.coarsenings));
     output.log(energy_line());
     if (far_field.counts().refreshed > 0)
       output.log(far_field_line());

@@ -10,6 +10,7 @@
 #include "dd/mobility/linear_glide.h"
 #include "dd/mobility/velocity_solver.h"
 #include "dd/topology/collisions/moving_lines.h"
+#include "dd/topology/cross_slip.h"
 #include "dd/topology/node_splitting.h"
 #include "dd/topology/product_plane_rule.h"
 #include "dd/topology/remesh.h"
@@ -35,6 +36,7 @@ struct DriverSettings
   VelocitySettings velocities = {};
   IntegratorKind method = IntegratorKind::stabilised;
   double near_distance = 0.0; ///< of subcycling, nm
+  CrossSlipSettings cross_slip = {};
 };
 
 /// A network in an infinite body or, with @p cell, in a periodic one.
@@ -43,7 +45,8 @@ class DislocationDriver
 public:
   DislocationDriver(DriverSettings driver_settings, const SlipSystems &systems, const PeriodicCell *periodic = nullptr)
       : settings(std::move(driver_settings)), integrator(make_integrator(settings.method, integrator_settings())),
-        cell(periodic), product_plane(product_plane_rule(systems)), solver(settings.mobility, settings.velocities)
+        cell(periodic), crystal(systems), product_plane(product_plane_rule(systems)),
+        solver(settings.mobility, settings.velocities)
   {
     if (cell)
     {
@@ -88,6 +91,8 @@ public:
     TopologyContext context = this->context(taken.displacement);
     move_lines(context, candidates, taken.parts);
     split_nodes(context, splitting(), [&](const Network &n) { return forces(n); });
+    ddfem::cross_slip(context, settings.cross_slip, crystal, {taken.dt, 1, n_steps++},
+                      [&](const std::vector<Vec3> &points) { return stress(points); });
     if (remeshing)
       remesh(context);
     strain_volume += plastic_strain_volume(swept);
@@ -126,6 +131,16 @@ public:
                                 {settings.medium, settings.core_cutoff_radius, settings.pair_tolerance,
                                  RayDirection::normal, settings.summation},
                                 e, MPI_COMM_SELF);
+  }
+
+  /// Total stress at points, MPa.
+  std::vector<SymTensor> stress(const std::vector<Vec3> &points)
+  {
+    std::vector<SymTensor> sum =
+        LineSystem(settings.medium, network, nullptr, RayDirection::normal, cell, images.get()).stress(points);
+    for (SymTensor &s : sum)
+      s += applied;
+    return sum;
   }
 
   TopologyContext context(std::vector<Vec3> displacement)
@@ -187,6 +202,8 @@ private:
   }
 
   const PeriodicCell *cell;
+  SlipSystems crystal;
+  std::uint64_t n_steps = 0;
   std::unique_ptr<PeriodicImages> images;
   ProductPlane product_plane;
   VelocitySolver solver;

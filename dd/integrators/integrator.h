@@ -19,6 +19,7 @@ class SplitForces;
 class VelocityFunction
 {
 public:
+  VelocityFunction() = default; ///< not to be called
   template <class F> VelocityFunction(F f)
   {
     if constexpr (std::is_invocable_v<F, const Network &, double>)

@@ -36,7 +36,8 @@ struct TopologySettings
 /// Number of topological events since the start of the run.
 struct TopologyCounts
 {
-  std::size_t collisions = 0, annihilations = 0, splits = 0, refinements = 0, coarsenings = 0, surface_exits = 0;
+  std::size_t collisions = 0, annihilations = 0, splits = 0, refinements = 0, coarsenings = 0, surface_exits = 0,
+              cross_slips = 0;
 };
 
 /// The glide plane of a product line of direction xi (unit) and Burgers vector b through a point, or invalid if the line is

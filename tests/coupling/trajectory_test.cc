@@ -31,6 +31,7 @@ struct Outcome
 {
   std::uint64_t checksum;
   SymTensor plastic_strain;
+  std::size_t cross_slips;
 };
 
 Outcome run(const InputDeck &deck, MPI_Comm communicator, const int threads)
@@ -41,7 +42,7 @@ Outcome run(const InputDeck &deck, MPI_Comm communicator, const int threads)
   RunOutput silent("", false);
   simulation.run(silent);
   omp_set_num_threads(before);
-  return {simulation.network().checksum(), simulation.plastic_strain()};
+  return {simulation.network().checksum(), simulation.plastic_strain(), simulation.topology_counts().cross_slips};
 }
 
 /// Mode and integrator.
@@ -65,9 +66,35 @@ TEST_P(SameTrajectory, BitByBitOnAnyNumberOfRanksAndThreads)
   }
 }
 
+class RandomTrajectory : public testing::TestWithParam<const char *>
+{
+};
+
+TEST_P(RandomTrajectory, IsTheSameOnAnyNumberOfRanksAndThreads)
+{
+  // Screw sources that cross-slip often, and the noise of the heat bath.
+  std::vector<std::string> settings = high_stress;
+  settings.insert(settings.end(), {"Microstructure/Frank-Read sources=1 1 1 / -1 0 1 / 0 0 0 / 2e-7 / 0",
+                                   "Mobility/Thermal motion=true", "Cross-slip/Model=thermally activated",
+                                   "Cross-slip/Attempt rate=1e14", "Cross-slip/Activation energy=1e-20",
+                                   "Time stepping/Maximum steps=25"});
+  const Outcome one = run(deck_of(GetParam(), settings), MPI_COMM_SELF, 1);
+  EXPECT_GT(one.cross_slips, 0U);
+  for (const auto &[communicator, threads] : {std::pair(MPI_COMM_SELF, 2), {MPI_COMM_WORLD, 1}})
+  {
+    const Outcome other = run(deck_of(GetParam(), settings), communicator, threads);
+    EXPECT_EQ(one.checksum, other.checksum) << threads << " threads";
+    EXPECT_EQ(one.cross_slips, other.cross_slips);
+  }
+  settings.push_back("Random seed=2");
+  EXPECT_NE(one.checksum, run(deck_of(GetParam(), settings), MPI_COMM_SELF, 1).checksum);
+}
+
 INSTANTIATE_TEST_SUITE_P(Modes, SameTrajectory,
                          testing::Values(std::pair("infinite", "stabilised"), std::pair("periodic", "stabilised"),
                                          std::pair("periodic", "subcycling")));
+
+INSTANTIATE_TEST_SUITE_P(Modes, RandomTrajectory, testing::Values("infinite", "periodic"));
 
 TEST(FiniteTrajectory, AgreesOnAnyNumberOfRanksToTheSolverTolerance)
 {

@@ -56,6 +56,11 @@ end
 CASES = [
     ("wrong entry name", "subsection Loading\n set Strain rat = 1\nend\n", [],
      ["input.prm:", "Strain rat", "did you mean 'Strain rate'"]),
+    ("cross-slip law of another metal", "", ["--set", "Material/Name=nickel", "--set", "Cross-slip/Model=thermally activated"],
+     ["Cross-slip/Model", "nickel", "only for copper"]),
+    ("cross-slip of bcc crystals in fcc", "", ["--set", "Cross-slip/Model=largest stress"], ["Cross-slip/Model", "bcc", "fcc"]),
+    ("half a cross-slip law", "", ["--set", "Cross-slip/Model=thermally activated", "--set", "Cross-slip/Schmid volume=5e-27"],
+     ["Cross-slip/Attempt rate", "must be positive"]),
     ("wrong section name", "subsection Loadin\n set Strain rate = 1\nend\n", [],
      ["input.prm:", "Loadin", "did you mean 'Loading'"]),
     ("entry at the wrong place", "set Strain rate = 1\n", [], ["input.prm:", "Strain rate", "section 'Loading'"]),

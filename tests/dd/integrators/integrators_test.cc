@@ -25,7 +25,8 @@ const SlipSystems fcc(Lattice::fcc, b *std::numbers::sqrt2);
 /// Copper, segments of 20 to 60 nm, capture within 2 nm.
 DriverSettings settings_with(const IntegratorKind kind, const double tolerance, const double first_step)
 {
-  DriverSettings s{{54600, 0.324, b}, b, linear_glide(1.5e-2, 1.5e-2), {20, 60, 4, 2}, {tolerance, 1e9, 1e9, first_step, 100}};
+  DriverSettings s{
+      {54600, 0.324, b}, b, linear_glide(1.5e-2, 1.5e-2), {20, 60, 4, 2}, {tolerance, 1e9, 1e9, first_step, 100}};
   s.pair_tolerance = 1e-10; // a step in the forces by another number of Gauss points limits the order
   s.method = kind;
   s.near_distance = 30;
