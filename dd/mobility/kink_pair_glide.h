@@ -20,7 +20,7 @@ struct KinkPairParameters
   static constexpr double width = 25; ///< w of a kink, in Burgers vectors
 };
 
-/// Tungsten at @p temperature (K): Po et al. 2016, table 2; B_e = 4.26e-4 Pa s + 0.87e-6 Pa s/K T, T_0 = 0.8 x 3695 K.
+/// Tungsten at @p temperature (K): Po et al. 2016, numbers as tabulated in MoDELib2 (W.txt); B_e = 4.26e-4 Pa s + 0.87e-6 Pa s/K T, T_0 = 0.8 x 3695 K.
 KinkPairParameters tungsten_kink_pairs(double temperature);
 
 /// Mobility of bcc lines of Po, Cui, Rivera, Cereceda, Swinburne, Marian & Ghoniem, Acta Mater. 119 (2016) 123, section 3, as far as the force per length
