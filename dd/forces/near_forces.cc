@@ -102,8 +102,8 @@ void NearForces::widen(const Network &network, const std::span<const NodeIndex> 
           pairs.push_back(network.id(s) < network.id(r) ? CandidatePair{s, r} : CandidatePair{r, s});
     }
   std::ranges::sort(pairs, {}, ids);
-  const auto repeated = std::ranges::unique(pairs, {}, ids);
-  pairs.erase(repeated.begin(), repeated.end());
+  const auto same = [&](const CandidatePair &p, const CandidatePair &q) { return ids(p) == ids(q); };
+  pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
   make_lists(network);
 }
 
